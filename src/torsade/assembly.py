@@ -1,0 +1,180 @@
+"""Fibers as index arrays (nodes, edges, hinges) and their state.
+
+A node is a bead, an edge joins two nodes, a hinge is an interior vertex with the edge before and the edge
+after it. Open fibers, closed fibers and any number of them are the same structure: nodes and edges of
+one fiber are consecutive, a closed fiber has one edge and one hinge more at its seam. Both records are
+named tuples of arrays, so that compiled kernels take them as they are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from torsade.errors import TorsadeError
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class Assembly(NamedTuple):
+    """Connectivity and rest shape of one or many naturally straight fibers.
+
+    Attributes
+    ----------
+    edges : (n_edges, 2) nodes at the start and the end of each edge
+    hinges : (n_hinges, 3) edge before, edge after, node between
+    rest_length : (n_edges,) l [m]
+    hinge_length : (n_hinges,) lbar, half the rest length of the two edges [m]
+    node_length : (n_nodes,) Voronoi length lbar of each node [m]
+    edge_arclength : (n_edges,) rest arclength of edge midpoints along their fiber [m]
+    edge_fiber : (n_edges,) the fiber of each edge
+    fiber_length : (n_fibers,) rest length [m]
+    node_start, edge_start, hinge_start : (n_fibers + 1,) offsets
+    closed : (n_fibers,) whether the fiber is closed
+    """
+
+    edges: Ints
+    hinges: Ints
+    rest_length: Floats
+    hinge_length: Floats
+    node_length: Floats
+    edge_arclength: Floats
+    edge_fiber: Ints
+    fiber_length: Floats
+    node_start: Ints
+    edge_start: Ints
+    hinge_start: Ints
+    closed: NDArray[np.bool_]
+
+
+class State(NamedTuple):
+    """Where the fibers are and how they are twisted; everything a run needs to go on.
+
+    Attributes
+    ----------
+    x : (n_nodes, 3) node positions [m]
+    theta : (n_edges,) material angle from the reference director [rad]
+    director : (n_edges, 3) reference directors, parallel transported in time
+    reference_twist : (n_hinges,) unwrapped twist of the reference directors [rad]
+    v : (n_nodes, 3) node velocities [m/s], the starting guess of the mobility solve
+    omega : (n_edges,) spin about the tangent [rad/s]
+    """
+
+    x: Floats
+    theta: Floats
+    director: Floats
+    reference_twist: Floats
+    v: Floats
+    omega: Floats
+
+    def copy(self) -> State:
+        """A state that shares no memory with this one."""
+        return State(*(a.copy() for a in self))
+
+
+def assemble(
+    strands: Sequence[Floats],
+    closed: Sequence[bool] | None = None,
+    rest_lengths: Sequence[Floats] | None = None,
+) -> Assembly:
+    """Assembly of the given polylines, each (n, 3) [m]; rest lengths are the present ones unless given.
+
+    Raises
+    ------
+    TorsadeError
+        When a strand has too few nodes (2 if open, 3 if closed) or an edge of zero length.
+    """
+    flags = [False] * len(strands) if closed is None else list(closed)
+    parts = [_fiber(x, c, f) for f, (x, c) in enumerate(zip(strands, flags, strict=True))]
+    lengths = [p[2] for p in parts] if rest_lengths is None else [np.asarray(r, float) for r in rest_lengths]
+    node_start = np.cumsum([0] + [len(x) for x in strands], dtype=np.int64)
+    edge_start = np.cumsum([0] + [len(p[0]) for p in parts], dtype=np.int64)
+    hinge_start = np.cumsum([0] + [len(p[1]) for p in parts], dtype=np.int64)
+    edges = np.concatenate([p[0] + node_start[f] for f, p in enumerate(parts)])
+    shift = [np.array([edge_start[f], edge_start[f], node_start[f]]) for f in range(len(parts))]
+    hinges = np.concatenate([p[1] + s for p, s in zip(parts, shift, strict=True)])
+    rest = np.concatenate(lengths)
+    node_length = np.zeros(node_start[-1])
+    np.add.at(node_length, edges.ravel(), np.repeat(0.5 * rest, 2))
+    return Assembly(
+        edges=edges,
+        hinges=hinges,
+        rest_length=rest,
+        hinge_length=0.5 * (rest[hinges[:, 0]] + rest[hinges[:, 1]]),
+        node_length=node_length,
+        edge_arclength=np.concatenate([np.cumsum(r) - 0.5 * r for r in lengths]),
+        edge_fiber=np.repeat(np.arange(len(parts), dtype=np.int64), np.diff(edge_start)),
+        fiber_length=np.array([r.sum() for r in lengths]),
+        node_start=node_start,
+        edge_start=edge_start,
+        hinge_start=hinge_start,
+        closed=np.array(flags, dtype=np.bool_),
+    )
+
+
+def _fiber(x: Floats, closed: bool, fiber: int) -> tuple[Ints, Ints, Floats]:
+    """Edges, hinges (both counted from zero) and present edge lengths of one polyline."""
+    n = len(x)
+    if n < (3 if closed else 2):
+        needed = "a closed fiber needs at least 3" if closed else "an open fiber needs at least 2"
+        raise TorsadeError(f"fiber {fiber} has {n} node{'' if n == 1 else 's'}; {needed}: give more nodes.")
+    start = np.arange(n if closed else n - 1, dtype=np.int64)
+    edges = np.stack([start, (start + 1) % n], axis=1)
+    if closed:
+        hinges = np.stack([(start - 1) % n, start, start], axis=1)
+    else:
+        hinges = np.stack([start[:-1], start[1:], start[1:]], axis=1)
+    lengths = np.linalg.norm(x[edges[:, 1]] - x[edges[:, 0]], axis=1)
+    if not np.all(lengths > 0):
+        e = int(np.argmin(lengths))
+        raise TorsadeError(
+            f"nodes {edges[e, 0]} and {edges[e, 1]} of fiber {fiber} are at one place; "
+            "every edge needs a length: remove one of the two nodes."
+        )
+    return edges, hinges, lengths
+
+
+def initial_state(assembly: Assembly, strands: Sequence[Floats]) -> State:
+    """State at rest in twist: material directors parallel transported along each fiber.
+
+    A closed fiber keeps the holonomy of its centerline as reference twist at its seam, undone by the
+    material angle, so that its total twist is the one nearest to zero that closes: minus the holonomy
+    angle spread evenly over the hinges (Lk = 0 up to whole turns).
+    """
+    x = np.ascontiguousarray(np.concatenate([np.asarray(s, float) for s in strands]))
+    n_edges = len(assembly.edges)
+    director = np.empty((n_edges, 3))
+    theta = np.zeros(n_edges)
+    twist = np.zeros(len(assembly.hinges))
+    e = x[assembly.edges[:, 1]] - x[assembly.edges[:, 0]]
+    t = e / np.linalg.norm(e, axis=1, keepdims=True)
+    for f in range(len(assembly.closed)):
+        first, last = assembly.edge_start[f], assembly.edge_start[f + 1]
+        director[first] = _perpendicular(t[first])
+        for k in range(first + 1, last):
+            director[k] = _transported(director[k - 1], t[k - 1], t[k])
+        if assembly.closed[f]:
+            moved = _transported(director[last - 1], t[last - 1], t[first])
+            sine = t[first] @ np.cross(moved, director[first])
+            twist[assembly.hinge_start[f]] = np.arctan2(sine, moved @ director[first])
+    return State(x, theta, director, twist, np.zeros_like(x), np.zeros(n_edges))
+
+
+def _perpendicular(t: Floats) -> Floats:
+    axis = np.zeros(3)
+    axis[np.argmin(np.abs(t))] = 1.0
+    u = axis - (axis @ t) * t
+    return np.asarray(u / np.linalg.norm(u))
+
+
+def _transported(u: Floats, a: Floats, b: Floats) -> Floats:
+    """Parallel transport of u from tangent a to tangent b (one vector; setting up needs no kernel)."""
+    c = np.cross(a, b)
+    cosine = a @ b
+    v = cosine * u + np.cross(c, u) + c * (c @ u) / (1.0 + cosine)
+    v -= (v @ b) * b
+    return np.asarray(v / np.linalg.norm(v))

@@ -1,0 +1,122 @@
+"""No strand passes through another: what a step may do, and how close strands are."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from torsade._compile import compile_kernels
+
+
+def _clamped(value):
+    return min(1.0, max(0.0, value))
+
+
+def segment_distance(p0, p1, q0, q1):
+    """Smallest distance [m] between the segments p0 p1 and q0 q1, each point (3,)."""
+    ux = p1[0] - p0[0]
+    uy = p1[1] - p0[1]
+    uz = p1[2] - p0[2]
+    vx = q1[0] - q0[0]
+    vy = q1[1] - q0[1]
+    vz = q1[2] - q0[2]
+    rx = p0[0] - q0[0]
+    ry = p0[1] - q0[1]
+    rz = p0[2] - q0[2]
+    uu = ux * ux + uy * uy + uz * uz
+    vv = vx * vx + vy * vy + vz * vz
+    uv = ux * vx + uy * vy + uz * vz
+    ur = ux * rx + uy * ry + uz * rz
+    vr = vx * rx + vy * ry + vz * rz
+    determinant = uu * vv - uv * uv
+    s = 0.0
+    if determinant > 1e-12 * uu * vv:
+        s = _clamped((uv * vr - ur * vv) / determinant)
+    t = (uv * s + vr) / vv
+    if t < 0.0 or t > 1.0:
+        t = _clamped(t)
+        s = _clamped((uv * t - ur) / uu)
+    dx = rx + s * ux - t * vx
+    dy = ry + s * uy - t * vy
+    dz = rz + s * uz - t * vz
+    return math.sqrt(dx * dx + dy * dy + dz * dz)
+
+
+def largest_move(x0, x1):
+    """Largest distance [m] any node has moved between x0 and x1 (n_nodes, 3)."""
+    largest = 0.0
+    for i in range(x0.shape[0]):
+        dx = x1[i, 0] - x0[i, 0]
+        dy = x1[i, 1] - x0[i, 1]
+        dz = x1[i, 2] - x0[i, 2]
+        largest = max(largest, dx * dx + dy * dy + dz * dz)
+    return math.sqrt(largest)
+
+
+def _relative_move(x0, x1, i, j):
+    """How far [m] node i moves as seen from node j, squared."""
+    total = 0.0
+    for c in range(3):
+        d = x1[i, c] - x0[i, c] - x1[j, c] + x0[j, c]
+        total += d * d
+    return total
+
+
+def passes_through(x0, x1, i0, i1, j0, j1, move):
+    """Whether the segments i0 i1 and j0 j1 may cross while nodes move straight from x0 to x1.
+
+    Conservative: the distance shrinks by at most move [m] over the whole step, so an interval of the
+    step is safe when the distance at its middle exceeds half its share. Intervals are halved up to
+    2^-10 of the step; what is not safe by then counts as a crossing.
+    """
+    points = np.empty((4, 3))
+    k = 0
+    depth = 0
+    while True:
+        middle = (k + 0.5) * 0.5**depth
+        for n, node in enumerate((i0, i1, j0, j1)):
+            for c in range(3):
+                points[n, c] = (1.0 - middle) * x0[node, c] + middle * x1[node, c]
+        if segment_distance(points[0], points[1], points[2], points[3]) > 0.5 * move * 0.5**depth:
+            k += 1
+            while k % 2 == 0 and depth > 0:
+                k //= 2
+                depth -= 1
+            if depth == 0 and k == 1:
+                return False
+        elif depth == 10:
+            return True
+        else:
+            k *= 2
+            depth += 1
+
+
+def first_crossing(a, pairs, x0, x1, length, mid):
+    """First pair of edges that pass through each other as nodes move straight from x0 to x1, or -1.
+
+    Edge lengths (n_edges,) and midpoints (n_edges, 3) at x0 bound the distance from below; only where
+    that bound is not enough is the motion followed.
+    """
+    for k in range(pairs.shape[0]):
+        e = pairs[k, 0]
+        f = pairs[k, 1]
+        i0 = a.edges[e, 0]
+        i1 = a.edges[e, 1]
+        j0 = a.edges[f, 0]
+        j1 = a.edges[f, 1]
+        move = max(
+            max(_relative_move(x0, x1, i0, j0), _relative_move(x0, x1, i0, j1)),
+            max(_relative_move(x0, x1, i1, j0), _relative_move(x0, x1, i1, j1)),
+        )
+        move = math.sqrt(move)
+        dx = mid[f, 0] - mid[e, 0]
+        dy = mid[f, 1] - mid[e, 1]
+        dz = mid[f, 2] - mid[e, 2]
+        safe = move + 0.5 * (length[e] + length[f])
+        if dx * dx + dy * dy + dz * dz <= safe * safe and passes_through(x0, x1, i0, i1, j0, j1, move):
+            return k
+    return -1
+
+
+compile_kernels(__name__)

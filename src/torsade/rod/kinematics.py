@@ -1,0 +1,123 @@
+"""Geometry of a discrete rod: tangents, curvature binormals, parallel transport and twist.
+
+Twist is carried by a material angle theta on each edge, measured from a reference director that is
+parallel transported in time (Bergou et al. 2010). The reference twist of a hinge is the angle, about
+the second tangent, from the space-transported first director to the second one.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from torsade._compile import compile_kernels
+
+
+def edge_geometry(x, edges, length, tangent):
+    """Length [m] (n_edges,) and unit tangent (n_edges, 3) of every edge of nodes x (n_nodes, 3)."""
+    for e in range(edges.shape[0]):
+        i = edges[e, 0]
+        j = edges[e, 1]
+        dx = x[j, 0] - x[i, 0]
+        dy = x[j, 1] - x[i, 1]
+        dz = x[j, 2] - x[i, 2]
+        r = math.sqrt(dx * dx + dy * dy + dz * dz)
+        length[e] = r
+        s = 1.0 / r
+        tangent[e, 0] = dx * s
+        tangent[e, 1] = dy * s
+        tangent[e, 2] = dz * s
+
+
+def solid_angle_tangent(a, b, c):
+    """Numerator and denominator of tan(Omega/2) of the spherical triangle of unit vectors a, b, c.
+
+    Van Oosterom and Strackee (1983): tan(Omega/2) = a.(b x c) / (1 + a.b + b.c + c.a).
+    """
+    numerator = (
+        a[0] * (b[1] * c[2] - b[2] * c[1])
+        + a[1] * (b[2] * c[0] - b[0] * c[2])
+        + a[2] * (b[0] * c[1] - b[1] * c[0])
+    )
+    ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    bc = b[0] * c[0] + b[1] * c[1] + b[2] * c[2]
+    ca = c[0] * a[0] + c[1] * a[1] + c[2] * a[2]
+    return numerator, 1.0 + ab + bc + ca
+
+
+def small_atan(y, x):
+    """atan2(y, x); a series where |y/x| is so small that it is exact to round-off."""
+    if abs(y) < 0.02 * x:
+        q = y / x
+        s = q * q
+        return q * (1.0 - s * (1.0 / 3.0 - s * (0.2 - s * (1.0 / 7.0 - s * (1.0 / 9.0 - s / 11.0)))))
+    return math.atan2(y, x)
+
+
+def reference_twist_change(tangent_0, tangent, hinges, change):
+    """Exact change of every hinge's reference twist as tangents move from tangent_0 to tangent.
+
+    With both directors parallel transported in time, the change is minus the area on the unit sphere
+    enclosed by the path t_a0, t_b0, t_b, t_a (holonomy). Arrays (n_edges, 3), change (n_hinges,) [rad].
+    """
+    for k in range(hinges.shape[0]):
+        a = hinges[k, 0]
+        b = hinges[k, 1]
+        y1, x1 = solid_angle_tangent(tangent_0[a], tangent_0[b], tangent[b])
+        y2, x2 = solid_angle_tangent(tangent_0[a], tangent[b], tangent[a])
+        change[k] = -2.0 * small_atan(x1 * y2 + y1 * x2, x1 * x2 - y1 * y2)
+
+
+def transport(u, a, b, out):
+    """Parallel transport of the vector u from the unit tangent a to the unit tangent b, into out.
+
+    Rotation about a x b; renormalised against b so that round-off never accumulates.
+    """
+    cx = a[1] * b[2] - a[2] * b[1]
+    cy = a[2] * b[0] - a[0] * b[2]
+    cz = a[0] * b[1] - a[1] * b[0]
+    cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    q = (cx * u[0] + cy * u[1] + cz * u[2]) / (1.0 + cosine)
+    vx = cosine * u[0] + cy * u[2] - cz * u[1] + q * cx
+    vy = cosine * u[1] + cz * u[0] - cx * u[2] + q * cy
+    vz = cosine * u[2] + cx * u[1] - cy * u[0] + q * cz
+    p = vx * b[0] + vy * b[1] + vz * b[2]
+    vx -= p * b[0]
+    vy -= p * b[1]
+    vz -= p * b[2]
+    s = 1.0 / math.sqrt(vx * vx + vy * vy + vz * vz)
+    out[0] = vx * s
+    out[1] = vy * s
+    out[2] = vz * s
+
+
+def transport_directors(director, tangent_0, tangent):
+    """Carry every reference director (n_edges, 3) from tangent_0 to tangent, in place."""
+    for e in range(director.shape[0]):
+        transport(director[e], tangent_0[e], tangent[e], director[e])
+
+
+def reference_twist(director, tangent, hinges, twist):
+    """Reference twist [rad] of every hinge, unwrapped to the value nearest to the one in twist.
+
+    director, tangent (n_edges, 3); twist (n_hinges,) holds the previous values and receives the new.
+    """
+    moved = np.empty(3)
+    for k in range(hinges.shape[0]):
+        a = hinges[k, 0]
+        b = hinges[k, 1]
+        transport(director[a], tangent[a], tangent[b], moved)
+        u = director[b]
+        t = tangent[b]
+        cosine = moved[0] * u[0] + moved[1] * u[1] + moved[2] * u[2]
+        sine = (
+            t[0] * (moved[1] * u[2] - moved[2] * u[1])
+            + t[1] * (moved[2] * u[0] - moved[0] * u[2])
+            + t[2] * (moved[0] * u[1] - moved[1] * u[0])
+        )
+        angle = math.atan2(sine, cosine)
+        twist[k] = angle + 2.0 * math.pi * round((twist[k] - angle) / (2.0 * math.pi))
+
+
+compile_kernels(__name__)

@@ -1,0 +1,83 @@
+"""Colours that carry meaning: the measured strain colours of photonic fibers, and strands told apart.
+
+The strain map is a measurement, not a design: the colour that a colour-changing photonic fiber shows at
+logarithmic strain 0, 0.05, ..., 0.70 (thesis figure 4-2C), linear in between and held outside. It is
+absolute: one colour is one strain, in every picture, whatever the range of the data.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from matplotlib.colors import LinearSegmentedColormap
+
+STRAIN_MAX = 0.70
+
+STRAIN_TABLE: NDArray[np.uint8] = np.array(
+    [
+        (255, 0, 65),
+        (255, 0, 40),
+        (255, 0, 17),
+        (255, 0, 5),
+        (255, 23, 0),
+        (255, 96, 0),
+        (255, 135, 0),
+        (238, 174, 0),
+        (189, 207, 0),
+        (111, 231, 0),
+        (0, 245, 0),
+        (0, 251, 84),
+        (0, 238, 138),
+        (0, 211, 178),
+        (0, 172, 206),
+    ],
+    dtype=np.uint8,
+)
+"""(15, 3) sRGB colour at log strain 0, 0.05, ..., 0.70."""
+
+STRAND_COLOURS: tuple[str, ...] = (
+    "#2f6fa8",
+    "#e39a2d",
+    "#3f9c8a",
+    "#b5475c",
+    "#8a78b8",
+    "#7d8792",
+    "#c9b458",
+    "#4b4f63",
+)
+"""sRGB colours for telling strands apart; neighbours in the list differ in lightness as well as in hue."""
+
+
+def strain_colour(log_strain: ArrayLike) -> NDArray[np.float64]:
+    """Measured colour of a photonic fiber at the given strain.
+
+    Parameters
+    ----------
+    log_strain : (...,) logarithmic strain, dimensionless; held at 0 and 0.70 outside the measured range
+
+    Returns
+    -------
+    (..., 3) sRGB colour, each channel 0..1
+    """
+    strain = np.asarray(log_strain, dtype=np.float64)
+    measured = np.linspace(0.0, STRAIN_MAX, len(STRAIN_TABLE))
+    channels = [np.interp(strain, measured, STRAIN_TABLE[:, c] / 255.0) for c in range(3)]
+    return np.stack(channels, axis=-1)
+
+
+def strand_colour(strand: int) -> NDArray[np.float64]:
+    """sRGB colour (3,), each channel 0..1, of the strand with this number; the list repeats."""
+    code = STRAND_COLOURS[strand % len(STRAND_COLOURS)]
+    return np.array([int(code[i : i + 2], 16) / 255.0 for i in (1, 3, 5)])
+
+
+def strain_colormap() -> LinearSegmentedColormap:
+    """The strain colours as a matplotlib colormap over 0..0.70, for colour bars and plots."""
+    from torsade.view._extra import require
+
+    colors = require("matplotlib.colors")
+    return colors.LinearSegmentedColormap.from_list("torsade.strain", STRAIN_TABLE / 255.0, N=1401)

@@ -1,0 +1,254 @@
+"""Pictures of fibers in space, fit to print: PyVista draws, no window or graphics card is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from torsade.errors import TorsadeError
+from torsade.view._extra import require
+from torsade.view.camera import (
+    SAMPLE,
+    VIEW_ANGLE,
+    View,
+    best_side,
+    frame,
+    knot_body,
+    level_right,
+)
+from torsade.view.colours import strain_colour, strand_colour
+from torsade.view.overlay import Mark, draw_over
+from torsade.view.shading import LAMP, Pieces, lit, occlusion
+from torsade.view.tube import Centerline, Mesh, smooth_centerline, tube
+
+if TYPE_CHECKING:
+    import xarray
+
+Floats = NDArray[np.float64]
+
+SUPERSAMPLING = 2
+MARGIN = 16
+"""Rendered beyond the frame on each side [pixels] and cut off, so that no filter meets the border."""
+
+
+def render(
+    strands: Sequence[ArrayLike],
+    closed: bool | Sequence[bool],
+    radius: float,
+    path: str | Path,
+    *,
+    values: Sequence[ArrayLike] | None = None,
+    size: tuple[int, int] = (1600, 1200),
+    direction: ArrayLike | None = None,
+    fill: float = 0.68,
+    fade: float = 0.0,
+    marks: Sequence[Mark] = (),
+) -> Path:
+    """Write a picture (PNG) of strands, framed tightly on the knot that they form.
+
+    Parameters
+    ----------
+    strands : node positions (n, 3) [m] of each strand
+    closed : whether strands are closed, one answer for all or one for each
+    radius : h [m]
+    path : the file to write
+    values : log strain (n,) of each strand: measured strain colours and a colour bar; without it every
+        strand has its own colour
+    size : width and height [pixels], multiples of 16
+    direction : (3,) from the knot to the camera; without it the side is taken that shows the knot best,
+        with the x axis horizontal when a strand has ends to be pulled
+    fill : share of the frame that the knot takes, in width or in height
+    fade : share of the frame's width over which strands fade away toward its borders
+    marks : names and arrows at the ends of strands
+
+    Returns
+    -------
+    The path of the file.
+    """
+    image = picture(
+        strands, closed, radius, values=values, size=size, direction=direction, fill=fill, fade=fade, marks=marks
+    )
+    path = Path(path)
+    try:
+        require("matplotlib.image").imsave(path, np.round(255.0 * image).astype(np.uint8), dpi=300, format="png")
+    except OSError as error:
+        raise TorsadeError(
+            f"the picture cannot be written to {path} ({error.strerror or error}); give a path in a folder "
+            "that exists and can be written."
+        ) from error
+    return path
+
+
+def render_result(dataset: xarray.Dataset, path: str | Path, frame: int = -1, **options: Any) -> Path:
+    """Write a picture of one stored frame of a result, coloured by strain; options as in `render`.
+
+    The dataset holds `position (time, node, space)` [m], `node_start (fiber_bound)`, `closed (fiber)`, the
+    attribute `radius` [m], and, for the colours, `log_strain (time, node)`.
+    """
+    missing = [name for name in ("position", "node_start", "closed") if name not in dataset]
+    if missing or "radius" not in dataset.attrs:
+        wanted = ", ".join(missing or ["the attribute radius"])
+        raise TorsadeError(f"this result cannot be drawn: it lacks {wanted}; give one written by a protocol.")
+    frames = dataset.sizes["time"]
+    if not -frames <= frame < frames:
+        raise TorsadeError(f"frame {frame} was asked for; the result has {frames}, numbered from 0.")
+    cuts = np.asarray(dataset["node_start"], dtype=np.int64)[1:-1]
+    strands = np.split(np.asarray(dataset["position"].isel(time=frame), dtype=np.float64), cuts)
+    if "log_strain" in dataset and "values" not in options:
+        options["values"] = np.split(np.asarray(dataset["log_strain"].isel(time=frame), float), cuts)
+    closed = [bool(c) for c in np.asarray(dataset["closed"])]
+    return render(strands, closed, float(dataset.attrs["radius"]), path, **options)
+
+
+def picture(
+    strands: Sequence[ArrayLike],
+    closed: bool | Sequence[bool],
+    radius: float,
+    *,
+    values: Sequence[ArrayLike] | None = None,
+    size: tuple[int, int] = (1600, 1200),
+    direction: ArrayLike | None = None,
+    fill: float = 0.68,
+    fade: float = 0.0,
+    marks: Sequence[Mark] = (),
+) -> Floats:
+    """The picture that `render` writes, as an array (height, width, 3) of sRGB from 0 to 1."""
+    nodes, loops = _checked(strands, closed, radius, values, size)
+    origin = np.concatenate(nodes).mean(axis=0)
+    nodes = [(x - origin) / radius for x in nodes]
+    curves = [smooth_centerline(x, loop, SAMPLE) for x, loop in zip(nodes, loops, strict=True)]
+    view = _view(curves, loops, size, direction, fill)
+    meshes = [tube(x, 1.0, loop, sides=64, spacing=0.125, rounding=0.3)
+              for x, loop in zip(nodes, loops, strict=True)]
+    if values is None:
+        colours = [np.tile(strand_colour(s), (len(m.vertices), 1)) for s, m in enumerate(meshes)]
+    else:
+        colours = [strain_colour(m.at_vertices(v)) for m, v in zip(meshes, values, strict=True)]
+    colours = _lit(meshes, colours, _pieces(curves, loops), view)
+    image = _rasterised(meshes, colours, view)
+    if fade > 0:
+        image = _faded(image, fade)
+    return draw_over(image, view, nodes, 1.0, marks, bar=values is not None)
+
+
+def _checked(
+    strands: Sequence[ArrayLike],
+    closed: bool | Sequence[bool],
+    radius: float,
+    values: Sequence[ArrayLike] | None,
+    size: tuple[int, int],
+) -> tuple[list[Floats], list[bool]]:
+    """Strands as arrays and one flag each, or a clear refusal."""
+    nodes = [np.asarray(x, dtype=np.float64) for x in strands]
+    loops = [bool(closed)] * len(nodes) if isinstance(closed, (bool, np.bool_)) else [bool(c) for c in closed]
+    if not nodes or len(loops) != len(nodes):
+        raise TorsadeError(
+            f"a picture was asked of {len(nodes)} strands with {len(loops)} answers to whether they are closed; "
+            "give at least one strand and one answer for each."
+        )
+    if not radius > 0:
+        raise TorsadeError(f"the radius is {radius} m; it must be positive.")
+    if any(side <= 0 or side % 16 for side in size):
+        raise TorsadeError(f"the picture size is {size[0]} x {size[1]}; both sides must be multiples of 16.")
+    if values is not None:
+        given, wanted = [np.shape(v) for v in values], [(len(x),) for x in nodes]
+        if given != wanted:
+            raise TorsadeError(f"values have shapes {given}; one value per node is needed: {wanted}.")
+    return nodes, loops
+
+
+def _view(
+    curves: Sequence[Centerline],
+    loops: Sequence[bool],
+    size: tuple[int, int],
+    direction: ArrayLike | None,
+    fill: float,
+) -> View:
+    """The camera, in radii."""
+    body = np.concatenate(knot_body(curves, loops, 1.0))
+    if direction is None:
+        right, toward = best_side(body, 1.0, level=not all(loops))
+    else:
+        toward = np.asarray(direction, dtype=np.float64)
+        if toward.shape != (3,) or not np.linalg.norm(toward) > 0:
+            raise TorsadeError(f"the direction {direction} is not a vector; give three numbers, not all zero.")
+        toward = toward / np.linalg.norm(toward)
+        right = level_right(toward)
+    return frame(body, 1.0, size, right, toward, fill)
+
+
+def _pieces(curves: Sequence[Centerline], loops: Sequence[bool]) -> Pieces:
+    """The strands as short pieces that cast shadows, one around each point of the sampled curves."""
+    lengths = []
+    for curve, loop in zip(curves, loops, strict=True):
+        after = np.roll(curve.x, -1, axis=0) - curve.x
+        gap = np.linalg.norm(after if loop else after[:-1], axis=1)
+        before = np.roll(gap, 1) if loop else np.append(0.0, gap)
+        lengths.append(0.5 * (before + (gap if loop else np.append(gap, 0.0))))
+    return Pieces(
+        np.concatenate([c.x for c in curves]), np.concatenate([c.t for c in curves]), np.concatenate(lengths)
+    )
+
+
+def _lit(meshes: Sequence[Mesh], colours: Sequence[Floats], pieces: Pieces, view: View) -> list[Floats]:
+    """sRGB colours (n, 3) of all vertices as the camera sees them, lit and in each other's shadow."""
+    axes = np.array([view.right, view.up, view.toward])
+    camera = view.focus + view.distance * view.toward
+    result = []
+    for mesh, rgb in zip(meshes, colours, strict=True):
+        sky, shade = occlusion(mesh.vertices, mesh.normals, pieces, 1.0, LAMP @ axes)
+        eye = camera - mesh.vertices
+        eye /= np.linalg.norm(eye, axis=1, keepdims=True)
+        result.append(lit(rgb, mesh.normals, eye, axes, sky, shade))
+    return result
+
+
+def _rasterised(meshes: Sequence[Mesh], colours: Sequence[Floats], view: View) -> Floats:
+    """Draw coloured meshes on white: (height, width, 3) of sRGB from 0 to 1."""
+    pyvista = require("pyvista")
+    width, height = view.size
+    k, wide, high = SUPERSAMPLING, width + 2 * MARGIN, height + 2 * MARGIN
+    with _quiet_vtk():
+        plotter = pyvista.Plotter(off_screen=True, window_size=(k * wide, k * high), lighting="none")
+        try:
+            plotter.background_color = "white"
+            for mesh, rgb in zip(meshes, colours, strict=True):
+                surface = pyvista.PolyData.from_regular_faces(mesh.vertices, mesh.faces)
+                surface.point_data["colour"] = np.round(255.0 * rgb).astype(np.uint8)
+                plotter.add_mesh(surface, scalars="colour", rgb=True, lighting=False)
+            camera = plotter.camera
+            camera.focal_point, camera.up = view.focus, view.up
+            camera.position = view.focus + view.distance * view.toward
+            camera.view_angle = 2.0 * np.degrees(np.arctan(np.tan(0.5 * VIEW_ANGLE) * high / height))
+            plotter.renderer.reset_camera_clipping_range()
+            raw = np.asarray(plotter.screenshot(None, return_img=True), dtype=np.float64)[:, :, :3]
+        finally:
+            plotter.close()
+    raw = raw[k * MARGIN : -k * MARGIN, k * MARGIN : -k * MARGIN] / 255.0
+    return np.asarray(raw.reshape(height, k, width, k, 3).mean(axis=(1, 3)))
+
+
+@contextmanager
+def _quiet_vtk() -> Iterator[None]:
+    """Keep VTK's remarks about displays and drivers off the console."""
+    logger = require("vtkmodules.vtkCommonCore").vtkLogger
+    before = logger.GetCurrentVerbosityCutoff()
+    logger.SetStderrVerbosity(logger.VERBOSITY_OFF)
+    try:
+        yield
+    finally:
+        logger.SetStderrVerbosity(before)
+
+
+def _faded(image: Floats, fade: float) -> Floats:
+    """Blend into white toward the borders over a share of the width."""
+    height, width = image.shape[:2]
+    row, column = np.arange(height) + 0.5, np.arange(width) + 0.5
+    inset = np.minimum(np.minimum(row, height - row)[:, None], np.minimum(column, width - column)[None])
+    s = np.clip(inset / (fade * width), 0.0, 1.0)
+    return np.asarray(1.0 - (s * s * (3.0 - 2.0 * s))[:, :, None] * (1.0 - image))
