@@ -39,7 +39,7 @@ def test_section_of_unit_radius() -> None:
 @given(st.floats(1e-6, 1.0))
 def test_section_scales_with_radius(h: float) -> None:
     one, two = Section(h), Section(2 * h)
-    assert (two.A, two.I, two.J) == pytest.approx((4 * one.A, 16 * one.I, 32 * one.I))
+    assert pytest.approx((4 * one.A, 16 * one.I, 32 * one.I)) == (two.A, two.I, two.J)
 
 
 @pytest.mark.parametrize(
