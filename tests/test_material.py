@@ -9,7 +9,7 @@ import sys
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from torsade.errors import TorsadeError
@@ -18,6 +18,7 @@ from torsade.material import MATERIALS, Material, Section, material, preset
 STEEL = Material(name="steel", E=2e11, E_b=2e11, nu=0.3, rho=7800.0, eta=1.0)
 
 
+@settings(deadline=None)
 @given(st.floats(1e3, 1e12), st.floats(-0.9, 0.49))
 def test_isotropic_moduli_agree(E: float, nu: float) -> None:
     """With E_b = E, 1/mu and 1/K satisfy the identity 9/E = 3/mu + 1/K of isotropic elasticity."""
@@ -36,6 +37,7 @@ def test_section_of_unit_radius() -> None:
     assert pytest.approx((math.pi, math.pi / 4, math.pi / 2)) == (section.A, section.I, section.J)
 
 
+@settings(deadline=None)
 @given(st.floats(1e-6, 1.0))
 def test_section_scales_with_radius(h: float) -> None:
     one, two = Section(h), Section(2 * h)

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -78,12 +78,14 @@ def test_reads(text: str | float, dimension: str, si: float) -> None:
 @pytest.mark.parametrize(
     ("prefix", "power"), [("p", -12), ("n", -9), ("m", -3), ("k", 3), ("M", 6), ("G", 9)]
 )
+@settings(deadline=None)
 @given(st.decimals(-1000, 1000, places=6))
 def test_prefix_is_a_power_of_ten_rounded_once(prefix: str, power: int, value: object) -> None:
     expected = float(Fraction(str(value)) * Fraction(10) ** power)
     assert quantity(f"{value} {prefix}N", "force") == expected
 
 
+@settings(deadline=None)
 @given(st.floats(allow_nan=False, allow_infinity=False), st.sampled_from(sorted(DIMENSIONS)))
 def test_number_and_its_si_text_agree(value: float, dimension: str) -> None:
     assert quantity(value, dimension) == value
@@ -149,6 +151,7 @@ def test_refuses(value: str | float, dimension: str, says: str) -> None:
     assert "\n" not in message
 
 
+@settings(deadline=None)
 @given(st.text(alphabet="0123456789.eE+-*/^()·°% NPasmkgµ²⁻", max_size=30))
 def test_any_text_is_read_or_refused(text: str) -> None:
     """No input escapes as another error, and what is read is finite."""
