@@ -305,10 +305,12 @@ def clearance(strands: Sequence[ArrayLike], closed: Sequence[bool], exclusion_le
         edges of which strands attain it.
 
     Raises:
-        TorsadeError: a strand has the wrong shape or too few nodes, or the exclusion is negative.
+        TorsadeError: no strand, or one of the wrong shape or too few nodes; a negative exclusion.
     """
     if not exclusion_length >= 0:
         raise TorsadeError(f"the exclusion cannot be {exclusion_length}; give a length of at least 0 [m]")
+    if len(strands) == 0:
+        raise TorsadeError("there is no strand to find the clearance of; give at least one")
     e = [edge_vectors(x, c) for x, c in zip(strands, closed, strict=True)]
     s = [np.concatenate([[0.0], np.cumsum(_norm(edges))]) for edges in e]
     p = [np.asarray(x, dtype=np.float64)[: len(edges)] for x, edges in zip(strands, e, strict=True)]
