@@ -158,7 +158,7 @@ def _read_text(path: Path) -> str:
 
 def _cells(line: str, where: str) -> list[str]:
     try:
-        return [cell.strip() for cell in next(csv.reader([line], strict=True))]
+        return [cell.strip() for cell in next(csv.reader([line.strip()], strict=True, skipinitialspace=True))]
     except csv.Error:
         raise TorsadeError(f"{where} cannot be read as CSV; give numbers separated by commas") from None
 
