@@ -93,25 +93,38 @@ def _arclength(x: Floats) -> Floats:
     return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(x, axis=0), axis=1))])
 
 
-def best_side(body: Floats, radius: float, level: bool) -> tuple[Floats, Floats]:
-    """Directions right and toward the camera (3,) from which the strands hide each other least.
+def best_side(curves: Sequence[Floats], body: Floats, radius: float, level: bool) -> tuple[Floats, Floats]:
+    """Directions right and toward the camera (3,) from which the knot is plainest.
 
-    Among many directions, the one with the largest silhouette of the body (n, 3). With `level`, the x axis,
-    along which fibers are pulled, stays horizontal; without, the longest axis of the silhouette does.
-    Opposite directions have equal silhouettes; the side of +z is taken, where diagrams are seen from.
+    Among many directions, the one with most of the body (n, 3) in sight, hidden neither by itself nor by
+    the rest of the strands, whose points (m, 3) are `curves`, and with few and clear crossings: the largest
+    visible area over the square root of the number of crossings, an oblique one counting for more. With
+    `level`, the x axis, along which fibers are pulled, stays horizontal; without, the longest axis of the
+    projected body does. Of two sides nearly as good, the one nearer to +z is taken, where diagrams are
+    seen from.
     """
     if level:
-        angle = np.radians(np.arange(-90.0, 90.0, 7.5))
+        angle = np.radians(np.arange(-180.0, 180.0, 7.5))
         sides = np.stack([0.0 * angle, np.sin(angle), np.cos(angle)], axis=1)
     else:
-        z = (np.arange(96) + 0.5) / 96
-        turn = np.pi * (1.0 + np.sqrt(5.0)) * np.arange(96)
+        z = 1.0 - (2.0 * np.arange(128) + 1.0) / 128
+        turn = np.pi * (1.0 + np.sqrt(5.0)) * np.arange(128)
         rho = np.sqrt(1.0 - z * z)
         sides = np.stack([rho * np.cos(turn), rho * np.sin(turn), z], axis=1)
-    centred = body - body.mean(axis=0)
-    rights = [np.array([1.0, 0.0, 0.0]) if level else _longest(centred, d) for d in sides]
-    area = [_silhouette(centred, r, d, radius) for r, d in zip(rights, sides, strict=True)]
-    best = int(np.argmax(np.array(area) * (1.0 + 0.05 * sides[:, 2])))
+    low, high = body.min(axis=0), body.max(axis=0)
+    centre, reach = 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low)) + 2.0 * radius
+    near = [(c[np.linalg.norm(c - centre, axis=1) < reach] - centre) / radius for c in curves]
+    near = [c[:: 1 + sum(map(len, near)) // 400] for c in near]
+    inside = cKDTree((body - centre) / radius).query(np.concatenate(near))[0] < SAMPLE
+    score = np.empty(len(sides))
+    rights = np.tile([1.0, 0.0, 0.0], (len(sides), 1))
+    for k, toward in enumerate(sides):
+        if not level:
+            rights[k] = _longest(np.concatenate(near)[inside], toward)
+        axes = np.stack([rights[k], np.cross(toward, rights[k]), toward], axis=1)
+        turned = [c @ axes for c in near]
+        score[k] = _visible_area(np.concatenate(turned), inside) / np.sqrt(1.0 + _crossings(turned))
+    best = int(np.argmax(score * (1.0 + 0.03 * sides[:, 2])))
     return rights[best], sides[best]
 
 
@@ -129,16 +142,33 @@ def _longest(centred: Floats, toward: Floats) -> Floats:
     return np.asarray(axis if axis[0] + 1e-3 * axis[1] >= 0 else -axis)
 
 
-def _silhouette(centred: Floats, right: Floats, toward: Floats, radius: float) -> float:
-    """Area that discs of the given radius around the points (n, 3) cover, seen from one side."""
-    up = np.cross(toward, right)
-    flat = np.stack([centred @ right, centred @ up], axis=1)
-    cell = 0.25 * radius
-    low, high = flat.min(axis=0) - radius, flat.max(axis=0) + radius
-    axes = [np.arange(low[k], high[k], max(cell, (high[k] - low[k]) / 200.0)) for k in (0, 1)]
-    grid = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
-    covered = cKDTree(flat).query(grid, distance_upper_bound=radius)[0] < radius
-    return float(covered.mean() * np.prod(high - low))
+def _visible_area(points: Floats, inside: NDArray[np.bool_]) -> float:
+    """Area in which, of unit discs around points (n, 3) seen from +z, one of `inside` is in front."""
+    flat = points[:, :2]
+    low, high = flat[inside].min(axis=0) - 1.0, flat[inside].max(axis=0) + 1.0
+    step = max(0.4, float((high - low).max()) / 64.0)
+    columns, rows = np.arange(low[0], high[0], step), np.arange(low[1], high[1], step)
+    front = np.zeros((len(columns), len(rows)), dtype=np.bool_)
+    for k in np.argsort(points[:, 2], kind="stable"):
+        a, b = flat[k]
+        c0, c1 = np.searchsorted(columns, (a - 1.0, a + 1.0))
+        r0, r1 = np.searchsorted(rows, (b - 1.0, b + 1.0))
+        disc = (columns[c0:c1, None] - a) ** 2 + (rows[None, r0:r1] - b) ** 2 < 1.0
+        front[c0:c1, r0:r1][disc] = inside[k]
+    return float(front.sum() * step * step)
+
+
+def _crossings(curves: Sequence[Floats]) -> float:
+    """Crossings of polylines (n, 3) seen from +z, each weighted with 1 over its sine, up to 5."""
+    a = np.concatenate([c[:-1, :2] for c in curves])
+    e = np.concatenate([np.diff(c[:, :2], axis=0) for c in curves])
+    w = a[None] - a[:, None]
+    area = e[:, None, 0] * e[None, :, 1] - e[:, None, 1] * e[None, :, 0]
+    area[area == 0.0] = np.inf
+    s = (w[..., 0] * e[None, :, 1] - w[..., 1] * e[None, :, 0]) / area
+    i, j = np.nonzero(np.triu((s > 0.0) & (s <= 1.0) & (s.T > 0.0) & (s.T <= 1.0), 2))
+    length = np.linalg.norm(e, axis=1)
+    return float(np.sum(np.minimum(length[i] * length[j] / np.abs(area[i, j]), 5.0)))
 
 
 def frame(

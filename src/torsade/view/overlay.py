@@ -40,7 +40,10 @@ class Mark(NamedTuple):
 def draw_over(
     picture: Floats, view: View, strands: Sequence[Floats], radius: float, marks: Sequence[Mark], bar: bool
 ) -> Floats:
-    """The picture (height, width, 3), 0..1, with marks and, if asked for, the strain colour bar."""
+    """The picture (height, width, 3), 0..1, with marks and, if asked for, the strain colour bar.
+
+    Strands are the nodes (n, 3) of each, in the unit of the view and of the radius.
+    """
     if not (bar or marks):
         return picture
     figure_module, agg = require("matplotlib.figure"), require("matplotlib.backends.backend_agg")
@@ -51,8 +54,9 @@ def draw_over(
         axes = figure.add_axes((0, 0, 1, 1), facecolor="none")
         axes.set(xlim=(0, width), ylim=(0, height))
         axes.axis("off")
+        pixels = [view.pixels(x) for x in strands]
         for mark in marks:
-            _draw_mark(axes, mark, view, strands[mark.strand], radius)
+            _draw_mark(axes, mark, view, pixels, 0.5 * radius * height / view.half_height)
         if bar:
             _draw_bar(figure, picture)
         canvas.draw()
@@ -61,37 +65,41 @@ def draw_over(
     return np.asarray(picture * (1.0 - alpha) + layer[:, :, :3] * alpha)
 
 
-def _draw_mark(axes: Any, mark: Mark, view: View, x: Floats, radius: float) -> None:
-    """One mark, set off by a little more than a radius from the strand, on its upper side."""
-    place = _in_frame(view.pixels(x), mark.node % len(x), view.size)
-    if place is None:
+def _draw_mark(axes: Any, mark: Mark, view: View, pixels: Sequence[Floats], thick: float) -> None:
+    """One mark beside its strand, on the side where other strands are further away."""
+    own = pixels[mark.strand]
+    at = _in_frame(own, mark.node % len(own), view.size)
+    if at is None:
         return
     unit = view.size[1] / 100.0
-    clear = 0.5 * radius * view.size[1] / view.half_height
-    normal = np.array([0.0, 1.0])
+    along = own[min(at + 1, len(own) - 1)] - own[max(at - 1, 0)]
+    normal = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-12)
+    normal *= 1.0 if normal[1] + 1e-6 * normal[0] >= 0 else -1.0
+    arrow = np.zeros(2)
     if mark.pull is not None:
         pull = np.asarray(mark.pull, dtype=np.float64)
         flat = np.array([pull @ view.right, pull @ view.up])
-        along = flat / max(float(np.linalg.norm(flat)), 1e-12)
-        normal = np.array([-along[1], along[0]]) * (1.0 if along[0] >= 0 else -1.0)
-        foot = place + normal * (clear + 2.2 * unit)
-        tail, tip = foot - 5.0 * unit * along, foot + 5.0 * unit * along
+        arrow = 5.0 * unit * flat / max(float(np.linalg.norm(flat)), 1e-12)
+    others = np.concatenate(pixels)
+    first, second = ((own[at] + side * normal * (thick + 3.5 * unit)) for side in (1.0, -1.0))
+    clear = [float(np.linalg.norm(others - place, axis=1).min()) for place in (first, second)]
+    if clear[1] > clear[0] + 0.5 * unit:
+        normal = -normal
+    if mark.pull is not None:
+        foot = own[at] + normal * (thick + 2.4 * unit + abs(float(arrow @ normal)))
         style = {"arrowstyle": "-|>", "lw": 0.28 * unit, "color": INK, "mutation_scale": 2.4 * unit}
-        axes.annotate("", tip, tail, arrowprops={**style, "shrinkA": 0, "shrinkB": 0})
+        axes.annotate("", foot + arrow, foot - arrow, arrowprops={**style, "shrinkA": 0, "shrinkB": 0})
     if mark.text:
-        away = clear + (4.6 if mark.pull is not None else 2.4) * unit
+        away = thick + (4.8 if mark.pull is not None else 2.6) * unit + abs(float(arrow @ normal))
         style = {"ha": "center", "va": "center", "color": INK, "fontsize": 1.9 * unit}
-        axes.text(*(place + normal * away), mark.text, **style)
+        axes.text(*(own[at] + normal * away), mark.text, **style)
 
 
-def _in_frame(pixels: Floats, node: int, size: tuple[int, int]) -> Floats | None:
-    """The point (2,) of a strand nearest to a node, counted along it, that is well inside the frame."""
-    margin = 0.09 * np.array(size)
-    inside = np.all((pixels > margin) & (pixels < np.array(size) - margin), axis=1)
-    candidates = np.flatnonzero(inside)
-    if not len(candidates):
-        return None
-    return np.asarray(pixels[candidates[np.argmin(np.abs(candidates - node))]])
+def _in_frame(pixels: Floats, node: int, size: tuple[int, int]) -> int | None:
+    """The node of a strand that is nearest, counted along it, to the given one and well inside the frame."""
+    margin = 0.10 * np.array(size)
+    candidates = np.flatnonzero(np.all((pixels > margin) & (pixels < np.array(size) - margin), axis=1))
+    return int(candidates[np.argmin(np.abs(candidates - node))]) if len(candidates) else None
 
 
 def _draw_bar(figure: Any, picture: Floats) -> None:
@@ -102,7 +110,7 @@ def _draw_bar(figure: Any, picture: Floats) -> None:
     box = figure.add_axes((left, bottom, BAR_WIDTH, BAR_HEIGHT))
     box.imshow(np.linspace(0, 1, 1024)[None], cmap=strain_colormap(), aspect="auto",
                extent=(0.0, STRAIN_MAX, 0.0, 1.0), interpolation="bilinear")
-    box.set(yticks=[], xticks=[0.0, 0.2, 0.4, 0.6])
+    box.set(yticks=[], xticks=[0.0, 0.2, 0.4, 0.6], xticklabels=["0", "0.2", "0.4", "0.6"])
     box.tick_params(length=0.5 * unit, width=0.12 * unit, pad=0.5 * unit, labelsize=1.75 * unit, colors=INK)
     for spine in box.spines.values():
         spine.set(linewidth=0.12 * unit, color=INK)

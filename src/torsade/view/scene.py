@@ -172,7 +172,7 @@ def _view(
     """The camera, in radii."""
     body = np.concatenate(knot_body(curves, loops, 1.0))
     if direction is None:
-        right, toward = best_side(body, 1.0, level=not all(loops))
+        right, toward = best_side([c.x for c in curves], body, 1.0, level=not all(loops))
     else:
         toward = np.asarray(direction, dtype=np.float64)
         if toward.shape != (3,) or not np.linalg.norm(toward) > 0:

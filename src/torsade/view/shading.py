@@ -56,7 +56,7 @@ def occlusion(
     for first in range(0, len(vertices), 1024):
         block = slice(first, first + 1024)
         sky[block], shade[block] = _block(vertices[block], normals[block], pieces, tree, radius, light)
-    return 1.0 - np.exp(-1.2 * sky), shade
+    return 1.0 - np.exp(-1.6 * sky), shade
 
 
 def _block(
@@ -99,15 +99,15 @@ def lit(
     n = normals @ axes.T
     open_sky = 1.0 - sky
     lamp = LAMP @ axes
-    ambient = 0.40 + 0.14 * n[:, 1] + 0.20 * n[:, 2] + 0.04 * n[:, 0]
-    direct = 0.62 * np.maximum((normals @ lamp + 0.25) / 1.25, 0.0) ** 1.4 * (1.0 - 0.75 * shade)
-    light = ambient[:, None] * _bounced(albedo, open_sky[:, None]) + (direct * open_sky**0.5)[:, None]
+    ambient = 0.31 + 0.12 * n[:, 1] + 0.17 * n[:, 2] + 0.03 * n[:, 0]
+    direct = 0.54 * np.maximum((normals @ lamp + 0.25) / 1.25, 0.0) ** 1.4 * (1.0 - 0.85 * shade)
+    light = ambient[:, None] * _bounced(0.75 * albedo, open_sky[:, None]) + (direct * open_sky**0.8)[:, None]
     facing = np.clip(np.sum(normals * eye, axis=1), 0.0, 1.0)
     mirrored = 2.0 * facing[:, None] * normals - eye
     fresnel = 0.04 + 0.96 * (1.0 - facing) ** 5
-    box = 0.36 * _step(mirrored @ lamp, np.cos(np.radians(38.0)), np.cos(np.radians(6.0)))
+    box = 0.30 * _step(mirrored @ lamp, np.cos(np.radians(46.0)), 1.0) ** 2
     surroundings = 0.30 + 0.25 * (mirrored @ axes[1])
-    gloss = box * (1.0 - shade) * open_sky + 0.30 * fresnel * surroundings * open_sky**2
+    gloss = box * (1.0 - shade) * open_sky + 0.14 * fresnel * surroundings * open_sky**2
     return np.asarray(np.clip(albedo * light + gloss[:, None], 0.0, 1.0) ** (1.0 / GAMMA))
 
 
