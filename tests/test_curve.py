@@ -60,6 +60,13 @@ def test_curvature_of_a_regular_polygon(n: int) -> None:
     np.testing.assert_allclose(kappa, 1 / (2 * np.cos(np.pi / n)), rtol=1e-12)
 
 
+def test_curvature_divides_by_the_mean_of_the_two_edges_at_the_node() -> None:
+    """The 3-4-5 triangle: half angles of its turns, from the tangent of half a corner."""
+    kappa = curve.curvature([[0, 0, 0], [4, 0, 0], [0, 3, 0]], closed=True)
+    turn = np.pi - np.array([np.pi / 2, np.arctan2(3, 4), np.arctan2(4, 3)])
+    np.testing.assert_allclose(kappa, 2 * np.tan(turn / 2) / [3.5, 4.5, 4.0], rtol=1e-12)
+
+
 def test_curvature_of_a_helix_converges_at_second_order() -> None:
     """kappa = r/(r^2 + p^2) for radius r and height p per radian."""
     sizes = np.array([50, 100, 200, 400])
@@ -232,11 +239,28 @@ def test_linear_resampling_stays_on_the_polyline_evenly() -> None:
 
 def test_cubic_resampling_is_even_in_arclength() -> None:
     """From uneven nodes of a circle, all chords come out equal and the nodes lie on the circle."""
-    a = np.sort(np.random.default_rng(3).uniform(0, 2 * np.pi, 300))
-    x = np.stack([np.cos(a), np.sin(a), 0 * a], axis=1)
-    y = curve.resample(x, n=64, closed=True)
-    np.testing.assert_allclose(np.linalg.norm(y, axis=1), 1, atol=1e-4)
-    np.testing.assert_allclose(curve.edge_lengths(y, closed=True), 2 * np.sin(np.pi / 64), rtol=1e-4)
+    a = 2 * np.pi * np.arange(400) / 400
+    a += 0.7 * np.sin(a)
+    y = curve.resample(np.stack([np.cos(a), np.sin(a), 0 * a], axis=1), n=64, closed=True)
+    np.testing.assert_allclose(np.linalg.norm(y, axis=1), 1, atol=1e-8)
+    np.testing.assert_allclose(curve.edge_lengths(y, closed=True), 2 * np.sin(np.pi / 64), rtol=1e-7)
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_cubic_resampling_is_even_between_few_uneven_nodes(closed: bool) -> None:
+    """The speed of the spline varies within a piece; chords differ only by (spacing * kappa)^2/24."""
+    y = curve.resample(random_walk(4, 8), n=20_000, closed=closed)
+    l = curve.edge_lengths(y, closed)
+    deficit = (curve.curvature(y, closed).max() * l.mean()) ** 2 / 24
+    assert deficit < 1e-4
+    np.testing.assert_allclose(l, l.mean(), rtol=1.05 * deficit)
+
+
+def test_cubic_resampling_knows_no_seam() -> None:
+    """From a regular polygon come nodes of the same symmetry, on both sides of node 0 as elsewhere."""
+    radii = np.linalg.norm(curve.resample(circle(12), n=120, closed=True), axis=1).reshape(12, 10)
+    np.testing.assert_allclose(radii, np.broadcast_to(radii[5], (12, 10)), atol=1e-12)
+    assert radii[5].max() - radii[5].min() > 1e-6  # the spline is not the circle itself
 
 
 def test_cubic_resampling_converges_at_fourth_order() -> None:

@@ -126,20 +126,24 @@ def test_clearance_equals_brute_force(
         assert curve.segment_distance(p0, p1, q0, q1) == pytest.approx(distance, rel=1e-9, abs=1e-12)
 
 
-def test_clearance_of_many_edges_equals_brute_force() -> None:
-    """More edges than one search chunk holds, so that chunk boundaries are crossed."""
-    strands = [random_walk(5, 300), random_walk(6, 350) + np.array([5.0, 0, 0])]
-    p = [x[:-1] for x in strands]
-    q = [x[1:] for x in strands]
-    s = [curve.arclength(x) for x in strands]
-    between = [np.maximum(k[None, :-1] - k[1:, None], k[:-1, None] - k[None, 1:]) for k in s]
-    own = [
-        np.where(b > 10, curve.segment_distance(a[:, None], c[:, None], a, c), np.inf)
-        for a, c, b in zip(p, q, between, strict=True)
-    ]
-    cross = curve.segment_distance(p[0][:, None], q[0][:, None], p[1], q[1])
-    found = curve.clearance(strands, [False, False], 10.0)
-    assert found.distance == pytest.approx(min(cross.min(), own[0].min(), own[1].min()), rel=1e-12)
+@pytest.mark.parametrize("seed", range(5))
+def test_clearance_of_many_edges_equals_brute_force(seed: int) -> None:
+    """More edges than one search chunk holds: all pairs of the second half, by broadcasting."""
+    walk = random_walk(seed, 700)
+    walk[:300] += 1e4  # what is nearest lies in the last chunks
+    p, q, s = walk[:-1], walk[1:], curve.arclength(walk)
+    between = s[None, :-1] - s[1:, None]
+    distance = np.where(between > 10, curve.segment_distance(p[:, None], q[:, None], p, q), np.inf)
+    found = curve.clearance([walk], [False], 10.0)
+    assert found.distance == pytest.approx(distance.min(), rel=1e-12)
+    assert distance[found.edges] == distance.min()
+
+
+def test_clearance_where_only_opposite_edges_count() -> None:
+    """In a hexagon with more than an edge and a half left out, opposite sides are sqrt(3) apart."""
+    found = curve.clearance([circle(6)], [True], 1.5)
+    assert found.distance == pytest.approx(np.sqrt(3))
+    assert found.edges[1] - found.edges[0] == 3
 
 
 def test_clearance_across_a_ring() -> None:

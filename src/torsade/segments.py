@@ -27,18 +27,16 @@ def segment_distance(p0: ArrayLike, p1: ArrayLike, q0: ArrayLike, q1: ArrayLike)
     p, q, r = p1 - p0, q1 - q0, p0 - q0
     pp, qq, pq, pr, qr = _dot(p, p), _dot(q, q), _dot(p, q), _dot(p, r), _dot(q, r)
     determinant = pp * qq - pq * pq
-    skew = determinant > 0
-    safe = np.where(skew, determinant, 1.0)
-    s, t = (pq * qr - qq * pr) / safe, (pp * qr - pq * pr) / safe
-    between = skew & (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)
-    # Outside, s and t may be huge: clip them so that the unused branch cannot overflow.
-    s, t = np.clip(s, 0, 1), np.clip(t, 0, 1)
-    perpendicular = _norm(r + s[..., None] * p - t[..., None] * q)
+    safe = np.where(determinant > 0, determinant, 1.0)
+    # Clipped to the segments, s and t give the distance of two of their points whatever happened
+    # before; it is the smallest when the common perpendicular stands inside both.
+    s, t = np.clip((pq * qr - qq * pr) / safe, 0, 1), np.clip((pp * qr - pq * pr) / safe, 0, 1)
+    across = _norm(r + s[..., None] * p - t[..., None] * q)
     at_ends = np.minimum(
         np.minimum(_point_distance(p0, q0, q), _point_distance(p1, q0, q)),
         np.minimum(_point_distance(q0, p0, p), _point_distance(q1, p0, p)),
     )
-    return np.asarray(np.where(between, np.minimum(perpendicular, at_ends), at_ends))
+    return np.minimum(across, at_ends)
 
 
 def nearest_pair(

@@ -9,6 +9,8 @@ __all__ = ["ArclengthSpline"]
 
 FloatArray = NDArray[np.float64]
 
+_PARTS = 8
+
 
 class ArclengthSpline:
     """A C2 cubic through nodes at their chord lengths, measured in its own arclength.
@@ -24,32 +26,35 @@ class ArclengthSpline:
         """
         from scipy.interpolate import CubicSpline
 
-        self.parameter = parameter
         self.curve = CubicSpline(parameter, knots, bc_type="periodic" if closed else "not-a-knot")
         self.velocity = self.curve.derivative()
-        spans = self._span(parameter[:-1], parameter[1:])
-        self.arclength = np.concatenate([[0.0], np.cumsum(spans)])
+        # Where nodes are few the speed varies much within a piece of the cubic: measure it in parts.
+        part = np.linspace(0, 1, _PARTS, endpoint=False)
+        inner = parameter[:-1, None] + np.diff(parameter)[:, None] * part
+        self._parameter = np.append(inner, parameter[-1])
+        spans = self._span(self._parameter[:-1], self._parameter[1:])
+        self._arclength = np.concatenate([[0.0], np.cumsum(spans)])
+        self.arclength = self._arclength[::_PARTS]
 
     def _span(self, start: FloatArray, end: FloatArray) -> FloatArray:
-        """Arclength from parameter `start` to `end`, each within one cubic piece (Gauss, 8 points)."""
+        """Arclength from parameter `start` to `end`, each within one part (Gauss, 8 points)."""
         nodes, weights = np.polynomial.legendre.leggauss(8)
         half = (end - start) / 2
         speed = np.linalg.norm(self.velocity((start + half)[:, None] + half[:, None] * nodes), axis=-1)
         return np.asarray(half * (speed @ weights))
 
     def at(self, s: FloatArray) -> FloatArray:
-        """Points at arclengths `s`, by Newton steps kept within the piece each belongs to."""
-        piece = np.clip(np.searchsorted(self.arclength, s, side="right") - 1, 0, len(self.parameter) - 2)
-        start, end = self.parameter[piece], self.parameter[piece + 1]
-        low, high = start.copy(), end.copy()
-        span = self.arclength[piece + 1] - self.arclength[piece]
-        q = start + (s - self.arclength[piece]) / span * (end - start)
+        """Points at arclengths `s`, by Newton steps kept within the part each belongs to."""
+        part = np.clip(np.searchsorted(self._arclength, s, side="right") - 1, 0, len(self._parameter) - 2)
+        start, before = self._parameter[part], self._arclength[part]
+        low, high = start, self._parameter[part + 1]
+        q = start + (s - before) / (self._arclength[part + 1] - before) * (high - low)
         for _ in range(30):
-            excess = self.arclength[piece] + self._span(start, q) - s
+            excess = before + self._span(start, q) - s
+            if np.all(np.abs(excess) <= 1e-13 * self.arclength[-1]):
+                break
             low, high = np.where(excess < 0, q, low), np.where(excess < 0, high, q)
             with np.errstate(divide="ignore", invalid="ignore"):
                 newton = q - excess / np.linalg.norm(self.velocity(q), axis=-1)
             q = np.where((newton >= low) & (newton <= high), newton, (low + high) / 2)
-            if np.all(np.abs(excess) <= 1e-14 * self.arclength[-1]):
-                break
         return np.asarray(self.curve(q))

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import math
 import re
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
@@ -192,7 +191,7 @@ def _from_text(text: str, wanted: Dimension) -> float:
     if math.isinf(rounded):
         return rounded
     # The exact fraction of "1e-999999999" would fill the memory; the float is 0 and costs nothing.
-    exact = Fraction(number[0]) if abs(rounded) > sys.float_info.min else Fraction(rounded)
+    exact = Fraction(number[0]) if rounded else Fraction(0)
     unit = plain[number.end() :].strip()
     if not unit:
         return rounded
