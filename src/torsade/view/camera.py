@@ -48,10 +48,13 @@ class View(NamedTuple):
 
     def pixels(self, x: Floats) -> Floats:
         """Where points x (n, 3) fall in the frame: (n, 2) pixels, rightward and upward from its corner."""
-        r = x - self.focus
-        scale = 0.5 * self.size[1] / self.half_height / (1.0 - (r @ self.toward) / self.distance)
-        flat = np.stack([r @ self.right, r @ self.up], axis=1)
-        return np.asarray(flat * scale[:, None] + 0.5 * np.array(self.size))
+        flat = (x - self.focus) @ np.stack([self.right, self.up], axis=1)
+        return np.asarray(flat * self.scale(x)[:, None] + 0.5 * np.array(self.size))
+
+    def scale(self, x: Floats) -> Floats:
+        """Pixels per unit of length at points x (n, 3), larger nearer to the camera."""
+        nearness = np.minimum((x - self.focus) @ self.toward / self.distance, 0.95)
+        return np.asarray(0.5 * self.size[1] / self.half_height / (1.0 - nearness))
 
 
 def knot_body(curves: Sequence[Centerline], closed: Sequence[bool], radius: float) -> list[Floats]:
@@ -77,13 +80,15 @@ def _contacts(
     x = np.concatenate([c.x for c in curves])
     start = np.cumsum([0] + [len(c.x) for c in curves])
     strand = np.repeat(np.arange(len(curves)), np.diff(start))
-    along = np.concatenate([_arclength(c.x) for c in curves])
-    round_trip = np.array([a + np.linalg.norm(c.x[-1] - c.x[0]) for c, a in
-                           ((c, _arclength(c.x)[-1]) for c in curves)])
+    places = [_arclength(c.x) for c in curves]
+    along = np.concatenate(places)
+    once_round = np.array(
+        [a[-1] + np.linalg.norm(c.x[-1] - c.x[0]) for a, c in zip(places, curves, strict=True)]
+    )
     i, j = cKDTree(x).query_pairs(reach, output_type="ndarray").T
     gap = np.abs(along[i] - along[j])
     loop = np.array(closed)[strand[i]]
-    gap = np.where(loop, np.minimum(gap, round_trip[strand[i]] - gap), gap)
+    gap = np.where(loop, np.minimum(gap, once_round[strand[i]] - gap), gap)
     apart = (strand[i] != strand[j]) | (gap > 0.5 * np.pi * reach + radius)
     touched = np.unique(np.concatenate([i[apart], j[apart]]))
     return [touched[strand[touched] == s] - start[s] for s in range(len(curves))]
@@ -97,11 +102,13 @@ def best_side(curves: Sequence[Floats], body: Floats, radius: float, level: bool
     """Directions right and toward the camera (3,) from which the knot is plainest.
 
     Among many directions, the one with most of the body (n, 3) in sight, hidden neither by itself nor by
-    the rest of the strands, whose points (m, 3) are `curves`, and with few and clear crossings: the largest
-    visible area over the square root of the number of crossings, an oblique one counting for more. With
-    `level`, the x axis, along which fibers are pulled, stays horizontal; without, the longest axis of the
-    projected body does. Of two sides nearly as good, the one nearer to +z is taken, where diagrams are
-    seen from.
+    the rest of the strands, whose points (m, 3) are `curves`, with few and clear crossings, and with no
+    strand end on: the largest visible area over the square root of the number of crossings, an oblique one
+    counting for more, times the projected share of the length.
+
+    With `level`, the x axis, along which fibers are pulled, stays horizontal; without, the longest axis of
+    the projected body does. Of two sides nearly as good, the one nearer to +z, where diagrams are seen from,
+    is taken, and then the one nearer to +y.
     """
     if level:
         angle = np.radians(np.arange(-180.0, 180.0, 7.5))
@@ -115,7 +122,7 @@ def best_side(curves: Sequence[Floats], body: Floats, radius: float, level: bool
     centre, reach = 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low)) + 2.0 * radius
     near = [(c[np.linalg.norm(c - centre, axis=1) < reach] - centre) / radius for c in curves]
     near = [c[:: 1 + sum(map(len, near)) // 400] for c in near]
-    inside = cKDTree((body - centre) / radius).query(np.concatenate(near))[0] < SAMPLE
+    inside = np.asarray(cKDTree((body - centre) / radius).query(np.concatenate(near))[0]) < SAMPLE
     score = np.empty(len(sides))
     rights = np.tile([1.0, 0.0, 0.0], (len(sides), 1))
     for k, toward in enumerate(sides):
@@ -123,8 +130,9 @@ def best_side(curves: Sequence[Floats], body: Floats, radius: float, level: bool
             rights[k] = _longest(np.concatenate(near)[inside], toward)
         axes = np.stack([rights[k], np.cross(toward, rights[k]), toward], axis=1)
         turned = [c @ axes for c in near]
-        score[k] = _visible_area(np.concatenate(turned), inside) / np.sqrt(1.0 + _crossings(turned))
-    best = int(np.argmax(score * (1.0 + 0.03 * sides[:, 2])))
+        area = _visible_area(np.concatenate(turned), inside)
+        score[k] = area * _breadth(turned) / np.sqrt(1.0 + _crossings(turned))
+    best = int(np.argmax(score * (1.0 + sides @ [0.0, 0.01, 0.03])))
     return rights[best], sides[best]
 
 
@@ -158,6 +166,12 @@ def _visible_area(points: Floats, inside: NDArray[np.bool_]) -> float:
     return float(front.sum() * step * step)
 
 
+def _breadth(curves: Sequence[Floats]) -> float:
+    """Length of polylines (n, 3) seen from +z over their length."""
+    e = np.concatenate([np.diff(c, axis=0) for c in curves])
+    return float(np.linalg.norm(e[:, :2], axis=1).sum() / np.linalg.norm(e, axis=1).sum())
+
+
 def _crossings(curves: Sequence[Floats]) -> float:
     """Crossings of polylines (n, 3) seen from +z, each weighted with 1 over its sine, up to 5."""
     a = np.concatenate([c[:-1, :2] for c in curves])
@@ -177,7 +191,7 @@ def frame(
     size: tuple[int, int],
     right: ArrayLike,
     toward: ArrayLike,
-    fill: float = 0.74,
+    fill: float,
 ) -> View:
     """The view whose frame the body (n, 3) fills to the given fraction, in width or in height."""
     r, d = np.asarray(right, dtype=np.float64), np.asarray(toward, dtype=np.float64)

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from torsade.view._extra import require
+
 if TYPE_CHECKING:
     from matplotlib.colors import LinearSegmentedColormap
 
@@ -40,16 +42,16 @@ STRAIN_TABLE: NDArray[np.uint8] = np.array(
 """(15, 3) sRGB colour at log strain 0, 0.05, ..., 0.70."""
 
 STRAND_COLOURS: tuple[str, ...] = (
-    "#2f6fa8",
+    "#3475b0",
     "#e39a2d",
-    "#3f9c8a",
-    "#b5475c",
-    "#8a78b8",
-    "#7d8792",
-    "#c9b458",
-    "#4b4f63",
+    "#43276b",
+    "#41a08d",
+    "#bf4560",
+    "#cfd3d7",
+    "#37451a",
+    "#efdc82",
 )
-"""sRGB colours for telling strands apart; neighbours in the list differ in lightness as well as in hue."""
+"""sRGB colours for telling strands apart, also by the colour-blind, and one from the next in grey."""
 
 
 def strain_colour(log_strain: ArrayLike) -> NDArray[np.float64]:
@@ -77,7 +79,7 @@ def strand_colour(strand: int) -> NDArray[np.float64]:
 
 def strain_colormap() -> LinearSegmentedColormap:
     """The strain colours as a matplotlib colormap over 0..0.70, for colour bars and plots."""
-    from torsade.view._extra import require
+    require("matplotlib")
+    from matplotlib.colors import LinearSegmentedColormap
 
-    colors = require("matplotlib.colors")
-    return colors.LinearSegmentedColormap.from_list("torsade.strain", STRAIN_TABLE / 255.0, N=1401)
+    return LinearSegmentedColormap.from_list("torsade.strain", list(STRAIN_TABLE / 255.0), N=1401)

@@ -56,7 +56,7 @@ def draw_over(
         axes.axis("off")
         pixels = [view.pixels(x) for x in strands]
         for mark in marks:
-            _draw_mark(axes, mark, view, pixels, 0.5 * radius * height / view.half_height)
+            _draw_mark(axes, mark, view, pixels, radius * view.scale(strands[mark.strand]))
         if bar:
             _draw_bar(figure, picture)
         canvas.draw()
@@ -65,13 +65,13 @@ def draw_over(
     return np.asarray(picture * (1.0 - alpha) + layer[:, :, :3] * alpha)
 
 
-def _draw_mark(axes: Any, mark: Mark, view: View, pixels: Sequence[Floats], thick: float) -> None:
-    """One mark beside its strand, on the side where other strands are further away."""
+def _draw_mark(axes: Any, mark: Mark, view: View, pixels: Sequence[Floats], radii: Floats) -> None:
+    """One mark beside its strand, of radii (n,) pixels, on the side where other strands are further away."""
     own = pixels[mark.strand]
     at = _in_frame(own, mark.node % len(own), view.size)
     if at is None:
         return
-    unit = view.size[1] / 100.0
+    unit, thick = view.size[1] / 100.0, float(radii[at])
     along = own[min(at + 1, len(own) - 1)] - own[max(at - 1, 0)]
     normal = np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), 1e-12)
     normal *= 1.0 if normal[1] + 1e-6 * normal[0] >= 0 else -1.0
@@ -90,7 +90,9 @@ def _draw_mark(axes: Any, mark: Mark, view: View, pixels: Sequence[Floats], thic
         style = {"arrowstyle": "-|>", "lw": 0.28 * unit, "color": INK, "mutation_scale": 2.4 * unit}
         axes.annotate("", foot + arrow, foot - arrow, arrowprops={**style, "shrinkA": 0, "shrinkB": 0})
     if mark.text:
-        away = thick + (4.8 if mark.pull is not None else 2.6) * unit + abs(float(arrow @ normal))
+        half_width = 0.8 * unit * len(mark.text) * abs(float(normal[0]))
+        gap = (4.8 if mark.pull is not None else 2.6) * unit + abs(float(arrow @ normal))
+        away = thick + gap + half_width
         style = {"ha": "center", "va": "center", "color": INK, "fontsize": 1.9 * unit}
         axes.text(*(own[at] + normal * away), mark.text, **style)
 
@@ -104,12 +106,16 @@ def _in_frame(pixels: Floats, node: int, size: tuple[int, int]) -> int | None:
 
 def _draw_bar(figure: Any, picture: Floats) -> None:
     """The strain colour bar in the emptiest corner."""
-    height, width = picture.shape[:2]
-    unit = height / 100.0
+    unit = picture.shape[0] / 100.0
     left, bottom = _emptiest_corner(picture)
     box = figure.add_axes((left, bottom, BAR_WIDTH, BAR_HEIGHT))
-    box.imshow(np.linspace(0, 1, 1024)[None], cmap=strain_colormap(), aspect="auto",
-               extent=(0.0, STRAIN_MAX, 0.0, 1.0), interpolation="bilinear")
+    box.imshow(
+        np.linspace(0, 1, 1024)[None],
+        cmap=strain_colormap(),
+        aspect="auto",
+        extent=(0.0, STRAIN_MAX, 0.0, 1.0),
+        interpolation="bilinear",
+    )
     box.set(yticks=[], xticks=[0.0, 0.2, 0.4, 0.6], xticklabels=["0", "0.2", "0.4", "0.6"])
     box.tick_params(length=0.5 * unit, width=0.12 * unit, pad=0.5 * unit, labelsize=1.75 * unit, colors=INK)
     for spine in box.spines.values():

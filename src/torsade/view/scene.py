@@ -45,7 +45,7 @@ def render(
     values: Sequence[ArrayLike] | None = None,
     size: tuple[int, int] = (1600, 1200),
     direction: ArrayLike | None = None,
-    fill: float = 0.68,
+    fill: float | None = None,
     fade: float = 0.0,
     marks: Sequence[Mark] = (),
 ) -> Path:
@@ -62,7 +62,8 @@ def render(
     size : width and height [pixels], multiples of 16
     direction : (3,) from the knot to the camera; without it the side is taken that shows the knot best,
         with the x axis horizontal when a strand has ends to be pulled
-    fill : share of the frame that the knot takes, in width or in height
+    fill : share of the frame that the knot takes, in width or in height; without it 0.68 when strands run
+        out of the frame, 0.84 when all of them is in it
     fade : share of the frame's width over which strands fade away toward its borders
     marks : names and arrows at the ends of strands
 
@@ -70,12 +71,12 @@ def render(
     -------
     The path of the file.
     """
-    image = picture(
-        strands, closed, radius, values=values, size=size, direction=direction, fill=fill, fade=fade, marks=marks
-    )
+    options: dict[str, Any] = {"values": values, "size": size, "direction": direction}
+    image = picture(strands, closed, radius, fill=fill, fade=fade, marks=marks, **options)
     path = Path(path)
+    pixels = np.round(255.0 * image).astype(np.uint8)
     try:
-        require("matplotlib.image").imsave(path, np.round(255.0 * image).astype(np.uint8), dpi=300, format="png")
+        require("matplotlib.image").imsave(path, pixels, dpi=300, format="png")
     except OSError as error:
         raise TorsadeError(
             f"the picture cannot be written to {path} ({error.strerror or error}); give a path in a folder "
@@ -113,7 +114,7 @@ def picture(
     values: Sequence[ArrayLike] | None = None,
     size: tuple[int, int] = (1600, 1200),
     direction: ArrayLike | None = None,
-    fill: float = 0.68,
+    fill: float | None = None,
     fade: float = 0.0,
     marks: Sequence[Mark] = (),
 ) -> Floats:
@@ -123,8 +124,10 @@ def picture(
     nodes = [(x - origin) / radius for x in nodes]
     curves = [smooth_centerline(x, loop, SAMPLE) for x, loop in zip(nodes, loops, strict=True)]
     view = _view(curves, loops, size, direction, fill)
-    meshes = [tube(x, 1.0, loop, sides=64, spacing=0.125, rounding=0.3)
-              for x, loop in zip(nodes, loops, strict=True)]
+    meshes = [
+        tube(x, 1.0, loop, sides=64, spacing=0.125, rounding=0.3)
+        for x, loop in zip(nodes, loops, strict=True)
+    ]
     if values is None:
         colours = [np.tile(strand_colour(s), (len(m.vertices), 1)) for s, m in enumerate(meshes)]
     else:
@@ -148,10 +151,13 @@ def _checked(
     loops = [bool(closed)] * len(nodes) if isinstance(closed, (bool, np.bool_)) else [bool(c) for c in closed]
     if not nodes or len(loops) != len(nodes):
         raise TorsadeError(
-            f"a picture was asked of {len(nodes)} strands with {len(loops)} answers to whether they are closed; "
-            "give at least one strand and one answer for each."
+            f"a picture was asked of {len(nodes)} strands with {len(loops)} answers to whether they are "
+            "closed; give at least one strand and one answer for each."
         )
-    if not radius > 0:
+    for s, x in enumerate(nodes):
+        if x.ndim != 2 or x.shape[1] != 3 or not np.all(np.isfinite(x)):
+            raise TorsadeError(f"strand {s} has shape {x.shape}; give finite node positions (n, 3) [m].")
+    if not (radius > 0 and np.isfinite(radius)):
         raise TorsadeError(f"the radius is {radius} m; it must be positive.")
     if any(side <= 0 or side % 16 for side in size):
         raise TorsadeError(f"the picture size is {size[0]} x {size[1]}; both sides must be multiples of 16.")
@@ -167,16 +173,18 @@ def _view(
     loops: Sequence[bool],
     size: tuple[int, int],
     direction: ArrayLike | None,
-    fill: float,
+    fill: float | None,
 ) -> View:
     """The camera, in radii."""
     body = np.concatenate(knot_body(curves, loops, 1.0))
+    if fill is None:
+        fill = 0.68 if len(body) < sum(len(c.x) for c in curves) else 0.84
     if direction is None:
         right, toward = best_side([c.x for c in curves], body, 1.0, level=not all(loops))
     else:
         toward = np.asarray(direction, dtype=np.float64)
         if toward.shape != (3,) or not np.linalg.norm(toward) > 0:
-            raise TorsadeError(f"the direction {direction} is not a vector; give three numbers, not all zero.")
+            raise TorsadeError(f"the direction {direction} is no vector; give three numbers, not all zero.")
         toward = toward / np.linalg.norm(toward)
         right = level_right(toward)
     return frame(body, 1.0, size, right, toward, fill)
@@ -201,11 +209,19 @@ def _lit(meshes: Sequence[Mesh], colours: Sequence[Floats], pieces: Pieces, view
     camera = view.focus + view.distance * view.toward
     result = []
     for mesh, rgb in zip(meshes, colours, strict=True):
-        sky, shade = occlusion(mesh.vertices, mesh.normals, pieces, 1.0, LAMP @ axes)
+        sky, shade = np.zeros((2, len(rgb)))
+        seen = _near_frame(view, mesh.vertices)
+        sky[seen], shade[seen] = occlusion(mesh.vertices[seen], mesh.normals[seen], pieces, 1.0, LAMP @ axes)
         eye = camera - mesh.vertices
         eye /= np.linalg.norm(eye, axis=1, keepdims=True)
         result.append(lit(rgb, mesh.normals, eye, axes, sky, shade))
     return result
+
+
+def _near_frame(view: View, x: Floats) -> NDArray[np.bool_]:
+    """Which points (n, 3) fall in the frame or within a tenth of it outside."""
+    place = view.pixels(x) / np.array(view.size)
+    return np.asarray(np.all((place > -0.1) & (place < 1.1), axis=1))
 
 
 def _rasterised(meshes: Sequence[Mesh], colours: Sequence[Floats], view: View) -> Floats:
@@ -226,11 +242,15 @@ def _rasterised(meshes: Sequence[Mesh], colours: Sequence[Floats], view: View) -
             camera.position = view.focus + view.distance * view.toward
             camera.view_angle = 2.0 * np.degrees(np.arctan(np.tan(0.5 * VIEW_ANGLE) * high / height))
             plotter.renderer.reset_camera_clipping_range()
-            raw = np.asarray(plotter.screenshot(None, return_img=True), dtype=np.float64)[:, :, :3]
+            raw = np.asarray(plotter.screenshot(None, return_img=True))
         finally:
             plotter.close()
-    raw = raw[k * MARGIN : -k * MARGIN, k * MARGIN : -k * MARGIN] / 255.0
-    return np.asarray(raw.reshape(height, k, width, k, 3).mean(axis=(1, 3)))
+    raw = raw[k * MARGIN : -k * MARGIN, k * MARGIN : -k * MARGIN, :3]
+    total = np.zeros((height, width, 3))
+    for row in range(k):
+        for column in range(k):
+            total += raw[row::k, column::k]
+    return total / (255.0 * k * k)
 
 
 @contextmanager

@@ -9,7 +9,6 @@ fraction of a second, which screen-space occlusion cannot offer.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -69,7 +68,7 @@ def _block(
     r /= distance[:, :, None]
     cosine = np.einsum("ijk,ik->ij", r, n.astype(np.float32))
     along = np.einsum("ijk,jk->ij", r, t)
-    above = np.maximum(cosine, 0.0)
+    above = np.where(distance < REACH * radius, np.maximum(cosine, 0.0), 0.0)
     sine = np.sqrt(np.maximum(1.0 - along * along, 0.0))
     sky = np.sum(2.0 * radius / np.pi * ds * sine * above / distance**2, axis=1)
     off = np.arccos(np.clip(r @ light.astype(np.float32), -1.0, 1.0))
@@ -79,9 +78,7 @@ def _block(
     return sky, np.max(cover, axis=1, initial=0.0)
 
 
-def lit(
-    srgb: Floats, normals: Floats, eye: Floats, axes: Floats, sky: Floats, shade: Floats
-) -> Floats:
+def lit(srgb: Floats, normals: Floats, eye: Floats, axes: Floats, sky: Floats, shade: Floats) -> Floats:
     """Colour of a satin surface under a broad lamp, a bright sky and weaker light from all sides.
 
     Parameters
@@ -100,12 +97,12 @@ def lit(
     open_sky = 1.0 - sky
     lamp = LAMP @ axes
     ambient = 0.31 + 0.12 * n[:, 1] + 0.17 * n[:, 2] + 0.03 * n[:, 0]
-    direct = 0.54 * np.maximum((normals @ lamp + 0.25) / 1.25, 0.0) ** 1.4 * (1.0 - 0.85 * shade)
+    direct = 0.60 * np.maximum((normals @ lamp + 0.25) / 1.25, 0.0) ** 1.4 * (1.0 - 0.85 * shade)
     light = ambient[:, None] * _bounced(0.75 * albedo, open_sky[:, None]) + (direct * open_sky**0.8)[:, None]
     facing = np.clip(np.sum(normals * eye, axis=1), 0.0, 1.0)
     mirrored = 2.0 * facing[:, None] * normals - eye
     fresnel = 0.04 + 0.96 * (1.0 - facing) ** 5
-    box = 0.30 * _step(mirrored @ lamp, np.cos(np.radians(46.0)), 1.0) ** 2
+    box = 0.26 * _step(mirrored @ lamp, np.cos(np.radians(46.0)), 1.0) ** 2
     surroundings = 0.30 + 0.25 * (mirrored @ axes[1])
     gloss = box * (1.0 - shade) * open_sky + 0.14 * fresnel * surroundings * open_sky**2
     return np.asarray(np.clip(albedo * light + gloss[:, None], 0.0, 1.0) ** (1.0 / GAMMA))

@@ -189,8 +189,8 @@ def tube(
     """
     if not (radius > 0 and sides >= 3 and spacing > 0 and 0 < rounding <= 1):
         raise TorsadeError(
-            f"a tube was asked with radius {radius}, {sides} sides, spacing {spacing} and rounding {rounding}; "
-            "radius and spacing must be positive, sides 3 or more, rounding in (0, 1]."
+            f"a tube was asked with radius {radius}, {sides} sides, spacing {spacing} and rounding "
+            f"{rounding}; radius and spacing must be positive, sides 3 or more, rounding in (0, 1]."
         )
     curve = smooth_centerline(x, closed, spacing * radius)
     u, v = minimal_frame(curve, closed)

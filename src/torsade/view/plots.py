@@ -1,0 +1,157 @@
+"""Curves against time, in the style of a printed figure: what a stored result says, on one small page."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from torsade.errors import TorsadeError
+from torsade.view._extra import require
+
+if TYPE_CHECKING:
+    import xarray
+
+Floats = NDArray[np.float64]
+
+INK, CURVE, SLIP = "#262a2e", "#2f6fa8", "#b5475c"
+STYLE: dict[str, Any] = {
+    "font.family": "sans-serif",
+    "font.sans-serif": ["Helvetica", "Arial", "DejaVu Sans"],
+    "font.size": 8.0,
+    "axes.edgecolor": INK,
+    "axes.labelcolor": INK,
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlesize": 8.5,
+    "axes.titlelocation": "left",
+    "axes.grid": True,
+    "grid.color": "#e4e7ea",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "xtick.major.width": 0.7,
+    "ytick.major.width": 0.7,
+    "lines.linewidth": 1.4,
+    "lines.solid_capstyle": "round",
+    "pdf.fonttype": 42,
+    "svg.hashsalt": "torsade",
+}
+
+
+def plot_separation(dataset: xarray.Dataset, path: str | Path) -> Path:
+    """Plot how far apart the two ends of a pulled bend are, and how fast they part, against time.
+
+    Parameters
+    ----------
+    dataset : coordinate `time` [s], variables `separation (time)` [m] and `pull_speed (time)` [m/s]; the
+        attributes `knot` and `c_f` make the title, `slipped_at_s` [s] is marked
+    path : the file to write; its ending chooses the format (png, pdf, svg)
+    """
+    _require(dataset, "separation", "pull_speed")
+    speed = 1e3 * _values(dataset, "pull_speed")
+    panels = [("separation (mm)", 1e3 * _values(dataset, "separation")), ("pull speed (mm/s)", speed)]
+    with require("matplotlib").rc_context(STYLE):
+        figure, axes = _stack(dataset, panels)
+        if np.isfinite(speed).any():
+            top = 1.15 * float(np.nanpercentile(speed, 97.0))
+            axes[1].set_ylim(min(0.0, float(np.nanpercentile(speed, 3.0))), top if top > 0 else None)
+        slipped = _number(dataset, "slipped_at_s")
+        if slipped is not None:
+            for axis in axes:
+                axis.axvline(slipped, color=SLIP, linewidth=0.9, linestyle=(0, (4, 2)))
+            box = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}
+            left = slipped > 0.6 * float(dataset["time"].max())
+            axes[0].annotate(
+                f"slips at {slipped:.3g} s",
+                (slipped, 0.06),
+                xycoords=("data", "axes fraction"),
+                xytext=(-5 if left else 5, 0),
+                textcoords="offset points",
+                ha="right" if left else "left",
+                color=SLIP,
+                bbox=box,
+            )
+        _title(axes[0], dataset)
+        return _save(figure, path)
+
+
+def plot_tightening(dataset: xarray.Dataset, path: str | Path) -> Path:
+    """Plot the end-to-end distance, the largest curvature and the twist of a tightened knot against time.
+
+    Parameters
+    ----------
+    dataset : coordinate `time` [s], variables `end_to_end (time)` [m], `h_kappa_max (time)` and
+        `total_twist (time)` [rad]; the attributes `knot` and `c_f` make the title
+    path : the file to write; its ending chooses the format (png, pdf, svg)
+    """
+    _require(dataset, "end_to_end", "h_kappa_max", "total_twist")
+    panels = [
+        ("end to end (mm)", 1e3 * _values(dataset, "end_to_end")),
+        (r"$h\,\kappa_{\mathrm{max}}$", _values(dataset, "h_kappa_max")),
+        ("total twist (rad)", _values(dataset, "total_twist")),
+    ]
+    with require("matplotlib").rc_context(STYLE):
+        figure, axes = _stack(dataset, panels)
+        _title(axes[0], dataset)
+        return _save(figure, path)
+
+
+def _require(dataset: xarray.Dataset, *names: str) -> None:
+    missing = [name for name in ("time", *names) if name not in dataset.variables]
+    if missing:
+        raise TorsadeError(
+            f"this result cannot be plotted: it lacks {', '.join(missing)}; give one written by the protocol "
+            "that this plot belongs to."
+        )
+
+
+def _values(dataset: xarray.Dataset, name: str) -> Floats:
+    return np.asarray(dataset[name], dtype=np.float64)
+
+
+def _number(dataset: xarray.Dataset, name: str) -> float | None:
+    """An attribute as a finite number, or None when it is absent, null or not a number."""
+    value = dataset.attrs.get(name)
+    return float(value) if value is not None and np.isfinite(float(value)) else None
+
+
+def _stack(dataset: xarray.Dataset, panels: list[tuple[str, Floats]]) -> tuple[Any, Any]:
+    """Panels one above the other over a common time axis."""
+    height = 0.7 + 1.45 * len(panels)
+    figure = require("matplotlib.figure").Figure(figsize=(4.5, height), layout="constrained")
+    axes = figure.subplots(len(panels), 1, sharex=True)
+    time = _values(dataset, "time")
+    for axis, (label, curve) in zip(axes, panels, strict=True):
+        axis.plot(time, curve, color=CURVE)
+        axis.set_ylabel(label)
+        axis.margins(x=0.0)
+    axes[-1].set_xlabel("time (s)")
+    figure.align_ylabels(axes)
+    return figure, axes
+
+
+def _title(axis: Any, dataset: xarray.Dataset) -> None:
+    """Name of the knot and its topological friction, as far as they are known."""
+    parts = [str(dataset.attrs["knot"])] if dataset.attrs.get("knot") else []
+    friction = _number(dataset, "c_f")
+    if friction is not None:
+        parts.append(rf"$c_f$ = {friction:.3g}")
+    if parts:
+        axis.set_title(",  ".join(parts))
+
+
+def _save(figure: Any, path: str | Path) -> Path:
+    path = Path(path)
+    try:
+        figure.savefig(path, dpi=300, facecolor="white")
+    except (OSError, ValueError) as error:
+        raise TorsadeError(
+            f"the plot cannot be written to {path} ({error}); give a path in a folder that can be written, "
+            "ending in .png, .pdf or .svg."
+        ) from error
+    return path

@@ -1,0 +1,121 @@
+"""Plots hold the curves, units, marks and titles of the result they are made from."""
+
+from __future__ import annotations
+
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from torsade.errors import TorsadeError
+from torsade.view import plots
+
+matplotlib = pytest.importorskip("matplotlib")
+T = np.linspace(0.0, 1.0, 101)
+
+
+def bend(**attrs):
+    speed = 0.01 + 0.5 * np.exp(-T / 0.005)
+    variables = {"separation": ("time", 0.008 + 0.01 * T), "pull_speed": ("time", speed)}
+    return xr.Dataset(variables, coords={"time": T}, attrs=attrs)
+
+
+def knot():
+    variables = {"end_to_end": 0.01 + 0.004 * T, "h_kappa_max": 0.3 + 0.2 * T, "total_twist": -0.67 * T}
+    return xr.Dataset({k: ("time", v) for k, v in variables.items()}, {"time": T}, {"knot": "trefoil"})
+
+
+@pytest.fixture(name="figure")
+def _figure(monkeypatch):
+    """The figure that a plot saves, kept for looking at."""
+    kept = {}
+
+    def keep(figure, path):
+        kept["figure"] = figure
+        return path
+
+    monkeypatch.setattr(plots, "_save", keep)
+    return lambda: kept["figure"]
+
+
+def curve(axis):
+    return axis.lines[0].get_xydata().T
+
+
+def test_separation_and_speed_in_millimetres_against_time(figure):
+    plots.plot_separation(bend(knot="reef", c_f=48.94), "x.png")
+    upper, lower = figure().axes
+    assert curve(upper) == pytest.approx(np.stack([T, 8 + 10 * T]))
+    assert curve(lower)[1] == pytest.approx(10 + 500 * np.exp(-T / 0.005))
+    assert upper.get_ylabel() == "separation (mm)"
+    assert lower.get_ylabel() == "pull speed (mm/s)"
+    assert lower.get_xlabel() == "time (s)"
+    assert "reef" in upper.get_title(loc="left")
+    assert "48.9" in upper.get_title(loc="left")
+
+
+def test_the_first_jerk_does_not_flatten_the_speed_curve(figure):
+    plots.plot_separation(bend(), "x.png")
+    bottom, top = figure().axes[1].get_ylim()
+    assert bottom == 0.0
+    assert 10.0 < top < 100.0
+
+
+@pytest.mark.parametrize("slipped", [0.25, 0.75])
+def test_the_slip_time_is_marked(figure, slipped):
+    plots.plot_separation(bend(slipped_at_s=slipped), "x.png")
+    for axis in figure().axes:
+        assert list(axis.lines[1].get_xdata()) == [slipped, slipped]
+    assert figure().axes[0].texts[0].get_text() == f"slips at {slipped} s"
+
+
+@pytest.mark.parametrize("attrs", [{}, {"slipped_at_s": None}, {"slipped_at_s": float("nan"), "c_f": None}])
+def test_a_bend_that_holds_has_no_mark(figure, attrs):
+    plots.plot_separation(bend(**attrs), "x.png")
+    upper = figure().axes[0]
+    assert len(upper.lines) == 1
+    assert not upper.texts
+    assert upper.get_title(loc="left") == ""
+
+
+def test_tightening_has_three_panels_over_one_time_axis(figure):
+    plots.plot_tightening(knot(), "x.png")
+    distance, bending, twist = figure().axes
+    assert curve(distance)[1] == pytest.approx(10 + 4 * T)
+    assert curve(bending)[1] == pytest.approx(0.3 + 0.2 * T)
+    assert curve(twist)[1] == pytest.approx(-0.67 * T)
+    assert distance.get_xlim() == twist.get_xlim() == (0.0, 1.0)
+    assert distance.get_title(loc="left") == "trefoil"
+
+
+@pytest.mark.parametrize(("ending", "start"), [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")])
+def test_the_ending_chooses_the_format(tmp_path, ending, start):
+    path = plots.plot_separation(bend(knot="thief", slipped_at_s=0.7), tmp_path / f"a.{ending}")
+    assert path.read_bytes().startswith(start)
+
+
+def test_plots_leave_the_settings_of_the_user_alone(tmp_path):
+    before = dict(matplotlib.rcParams)
+    plots.plot_tightening(knot(), tmp_path / "a.png")
+    assert dict(matplotlib.rcParams) == before
+    assert "matplotlib.pyplot" not in sys.modules or not sys.modules["matplotlib.pyplot"].get_fignums()
+
+
+def test_what_a_result_lacks_is_named(tmp_path):
+    with pytest.raises(TorsadeError, match="pull_speed"):
+        plots.plot_separation(bend().drop_vars("pull_speed"), tmp_path / "a.png")
+    with pytest.raises(TorsadeError, match="end_to_end, h_kappa_max, total_twist"):
+        plots.plot_tightening(bend(), tmp_path / "a.png")
+
+
+@pytest.mark.parametrize("name", ["a.nonsense", "missing/a.png"])
+def test_an_unwritable_file_is_named(tmp_path, name):
+    with pytest.raises(TorsadeError, match=r"a\."):
+        plots.plot_tightening(knot(), tmp_path / name)
+
+
+def test_a_missing_library_is_named_with_the_way_to_install_it(monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    with pytest.raises(TorsadeError, match=r'pip install "torsade\[view\]"'):
+        plots.plot_tightening(knot(), tmp_path / "a.png")
