@@ -177,6 +177,7 @@ def test_what_a_result_lacks_is_named(tmp_path):
         ({"radius": -1.0}, "positive"),
         ({"size": (100, 100)}, "multiples of 16"),
         ({"values": [np.zeros(3)]}, "one value per node"),
+        ({"values": [np.full(41, np.nan)]}, "not finite"),
         ({"direction": (0, 0, 0)}, "three numbers"),
     ],
 )

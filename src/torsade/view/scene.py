@@ -165,6 +165,8 @@ def _checked(
         given, wanted = [np.shape(v) for v in values], [(len(x),) for x in nodes]
         if given != wanted:
             raise TorsadeError(f"values have shapes {given}; one value per node is needed: {wanted}.")
+        if not all(np.all(np.isfinite(v)) for v in values):
+            raise TorsadeError("some values are not finite; give the log strain of every node.")
     return nodes, loops
 
 

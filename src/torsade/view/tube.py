@@ -72,7 +72,7 @@ def smooth_centerline(x: ArrayLike, closed: bool, spacing: float) -> Centerline:
     after = np.roll(x, -1, axis=0) if closed else x[1:]
     chord = np.linalg.norm(after - x[: len(after)], axis=1)
     slope = _slopes(x, chord, closed)
-    pieces = np.maximum(1, np.ceil(chord / spacing)).astype(np.int64)
+    pieces = np.maximum(1, np.ceil(chord / spacing - 1e-9)).astype(np.int64)
     edge = np.repeat(np.arange(len(chord)), pieces)
     s = (np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)) / pieces[edge]
     if not closed:
