@@ -94,7 +94,7 @@ def forces(a, m, bc, x, theta, base_tangent, base_twist, contacts, w):
     hinge_twist(theta, w.change, a.hinges, w.m)
     w.force[:] = bc.force
     w.torque[:] = bc.torque
-    add_elastic_forces(a, m.EA, m.B, m.C, w.length, w.tangent, w.m, w.force, w.torque)
+    add_elastic_forces(a, m.EA, m.B, m.C, m.bend_present, w.length, w.tangent, w.m, w.force, w.torque)
     edge_midpoints(x, a.edges, w.mid)
     find_contacts(m, w.mid, contacts)
     add_contact_forces(a, m, w.length, w.tangent, contacts, w.force)
@@ -198,7 +198,7 @@ def rates(a, m, bc, x, theta, base_tangent, base_twist, contacts, tolerance, v, 
     Returns OK, LOOSE (see hold_bodies) or UNSOLVED.
     """
     forces(a, m, bc, x, theta, base_tangent, base_twist, contacts, w)
-    find_drag(a, m, x, w.mid, contacts)
+    find_drag(a, m, x, w.length, w.mid, contacts)
     if hold_bodies(a, bc, contacts, w.held, w.component) != OK:
         return LOOSE
     _ground_guess(a, bc, v, w.held, w.component)
@@ -275,7 +275,7 @@ def powers(a, m, bc, v, omega, contacts, w):
 def energies(a, m, contacts, w, out):
     """Stretch, bend, twist and contact energy [J] into out (4,), at the forces just computed."""
     out[0] = stretch_energy(a, m.EA, w.length)
-    out[1] = bend_energy(a, m.B, w.tangent)
+    out[1] = bend_energy(a, m.B, m.bend_present, w.length, w.tangent)
     out[2] = twist_energy(a, m.C, w.m)
     out[3] = contact_energy(a, m, w.length, w.tangent, contacts)
 

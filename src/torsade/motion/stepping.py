@@ -341,10 +341,9 @@ def advance(a, m, bc, control, state, clock, until, max_steps, g):
             if control.fixed_step > 0.0:
                 status = _euler_step(a, m, bc, state, contacts, control, dt, g)
                 clock.count[2] += 1
-                error = 0.0
                 ratio = 0.0
             else:
-                stages = 1 + int(math.ceil(math.sqrt(1.0 + 1.54 * dt * spectrum)))
+                stages = 1 + math.ceil(math.sqrt(1.0 + 1.54 * dt * spectrum))
                 if stages > MAX_STAGES:
                     stages = MAX_STAGES
                     dt = (stages * stages - 2.0 * stages) / (1.54 * spectrum)

@@ -4,12 +4,14 @@ Contact (thesis 4.4, 4.5): edges whose midpoints are nearer than the diameter 2h
 
     E_c = 2h K sum_<e,f> A_ef V(p),   V(p) = 1/2 (p^2 + p0^2 p^4),   p = 1 - R/2h,
 
-R the distance of the midpoints. The contact area A_ef is |e . f| of the edge vectors (`projected`, as
-published) or the product of rest lengths (`product`, the continuum limit). Forces are exact gradients.
+R the distance of the midpoints. The contact area A_ef is the product of rest lengths (`product`, the
+continuum limit) or |e . f| of the edge vectors (`projected`, as published). Forces act along the line of
+midpoints; they are the exact gradient for `product` and the gradient at frozen area for `projected`.
 
 Collision drag couples the velocities of what touches, as a weighted graph Laplacian:
 
-    node-pair   w = eta_f A (lbar_i + lbar_j)/2 / r_ij^2 on the start and on the end nodes (thesis 4.6)
+    node-pair   w = eta_f A (lbar_i + lbar_j)/2 / r_ij^2 on the start and on the end nodes (thesis 4.6,
+                with the lengths lbar that edges have at present)
     continuum   w = eta_f A l_e l_f / R^3 on the midpoints (thesis 4.8, 4.10)
 """
 
@@ -31,7 +33,8 @@ class Model(NamedTuple):
     EA [N], B = E_b I and C = mu J [N m^2], K bulk modulus [Pa], p0_squared of the contact potential,
     diameter 2h [m], eta_A [N s], eta_J [N m^2 s], their collision counterparts eta_f_A and eta_f_J,
     the laws (projected: contact area; node_pair: drag; spin_drag: whether a strand's own spin is
-    dragged in contact), and the exclusion along a fiber (edges, and rest arclength [m]).
+    dragged in contact; bend_present: curvature per present, not rest, arclength), and the exclusion
+    along a fiber (edges, and rest arclength [m]).
     """
 
     EA: float
@@ -47,9 +50,9 @@ class Model(NamedTuple):
     projected: bool
     node_pair: bool
     spin_drag: bool
+    bend_present: bool
     exclusion_edges: int
     exclusion_length: float
-    flags: int = 0
 
 
 class Contacts(NamedTuple):
@@ -108,15 +111,11 @@ def find_contacts(m, mid, contacts):
 
 
 def contact_area(a, m, e, f, length, tangent):
-    """Area A_ef [m^2] of the contact of edges e and f, and the cosine of their angle."""
-    cosine = (
-        tangent[e, 0] * tangent[f, 0] + tangent[e, 1] * tangent[f, 1] + tangent[e, 2] * tangent[f, 2]
-    )
+    """Area A_ef [m^2] of the contact of edges e and f."""
     if m.projected:
-        if m.flags & 2:
-            return a.rest_length[e] * a.rest_length[f] * abs(cosine), cosine
-        return length[e] * length[f] * abs(cosine), cosine
-    return a.rest_length[e] * a.rest_length[f], cosine
+        cosine = tangent[e, 0] * tangent[f, 0] + tangent[e, 1] * tangent[f, 1] + tangent[e, 2] * tangent[f, 2]
+        return length[e] * length[f] * abs(cosine)
+    return a.rest_length[e] * a.rest_length[f]
 
 
 def contact_energy(a, m, length, tangent, contacts):
@@ -124,7 +123,7 @@ def contact_energy(a, m, length, tangent, contacts):
     total = 0.0
     for k in range(contacts.count[0]):
         p = 1.0 - contacts.distance[k] / m.diameter
-        area, _ = contact_area(a, m, contacts.edges[k, 0], contacts.edges[k, 1], length, tangent)
+        area = contact_area(a, m, contacts.edges[k, 0], contacts.edges[k, 1], length, tangent)
         total += m.diameter * m.K * area * 0.5 * (p * p + m.p0_squared * p**4)
     return total
 
@@ -140,7 +139,7 @@ def add_contact_forces(a, m, length, tangent, contacts, force):
     for k in range(contacts.count[0]):
         e = contacts.edges[k, 0]
         f = contacts.edges[k, 1]
-        area, cosine = contact_area(a, m, e, f, length, tangent)
+        area = contact_area(a, m, e, f, length, tangent)
         half = 0.5 * area * contact_pressure(m, contacts.distance[k])
         e0 = a.edges[e, 0]
         e1 = a.edges[e, 1]
@@ -152,24 +151,13 @@ def add_contact_forces(a, m, length, tangent, contacts, force):
             force[e1, c] -= push
             force[f0, c] += push
             force[f1, c] += push
-        if m.projected and m.flags & 1 == 0:
-            p = 1.0 - contacts.distance[k] / m.diameter
-            V = 0.5 * (p * p + m.p0_squared * p**4)
-            turn = m.diameter * m.K * V * (1.0 if cosine > 0.0 else -1.0)
-            for c in range(3):
-                on_e = turn * length[f] * tangent[f, c]
-                on_f = turn * length[e] * tangent[e, c]
-                force[e0, c] += on_e
-                force[e1, c] -= on_e
-                force[f0, c] += on_f
-                force[f1, c] -= on_f
 
 
 def compression(a, m, length, tangent, contacts):
     """Total compression force [N]: over every edge, the sum of the contact forces on it (Fig 4-1B)."""
     total = 0.0
     for k in range(contacts.count[0]):
-        area, _ = contact_area(a, m, contacts.edges[k, 0], contacts.edges[k, 1], length, tangent)
+        area = contact_area(a, m, contacts.edges[k, 0], contacts.edges[k, 1], length, tangent)
         total += 2.0 * area * contact_pressure(m, contacts.distance[k])
     return total
 
@@ -194,8 +182,22 @@ def _touching(a, m, mid, e, f):
     return dx * dx + dy * dy + dz * dz < m.diameter * m.diameter
 
 
-def _couple_nodes(a, m, x, i, j, contacts, e, f, mid):
-    """One node-pair drag between nodes i and j."""
+def _node_length(a, fiber, i, length):
+    """Voronoi length [m] of node i with its edges as long as they are."""
+    edge = a.edge_start[fiber] + i - a.node_start[fiber]
+    after = length[edge] if edge < a.edge_start[fiber + 1] else 0.0
+    before = 0.0
+    if i > a.node_start[fiber]:
+        before = length[edge - 1]
+    elif a.closed[fiber]:
+        before = length[a.edge_start[fiber + 1] - 1]
+    return 0.5 * (before + after)
+
+
+def _couple_nodes(a, m, x, length, e, f, end, contacts):
+    """The node-pair drag between the starts (end 0) or the ends (end 1) of edges e and f."""
+    i = a.edges[e, end]
+    j = a.edges[f, end]
     dx = x[i, 0] - x[j, 0]
     dy = x[i, 1] - x[j, 1]
     dz = x[i, 2] - x[j, 2]
@@ -204,33 +206,21 @@ def _couple_nodes(a, m, x, i, j, contacts, e, f, mid):
     contacts.drag_nodes[k, 1] = i
     contacts.drag_nodes[k, 2] = j
     contacts.drag_nodes[k, 3] = j
-    mean = 0.5 * (a.node_length[i] + a.node_length[j])
-    if m.flags & 4:
-        mean = 0.0
-        for q in (i, j):
-            fb = a.edge_fiber[e] if q == i else a.edge_fiber[f]
-            if q > a.node_start[fb]:
-                mean += 0.25*math.sqrt((x[q,0]-x[q-1,0])**2+(x[q,1]-x[q-1,1])**2+(x[q,2]-x[q-1,2])**2)
-            if q < a.node_start[fb+1]-1:
-                mean += 0.25*math.sqrt((x[q,0]-x[q+1,0])**2+(x[q,1]-x[q+1,1])**2+(x[q,2]-x[q+1,2])**2)
-    if m.flags & 8:
-        dx = mid[e, 0] - mid[f, 0]
-        dy = mid[e, 1] - mid[f, 1]
-        dz = mid[e, 2] - mid[f, 2]
+    mean = 0.5 * (_node_length(a, a.edge_fiber[e], i, length) + _node_length(a, a.edge_fiber[f], j, length))
     contacts.drag_weight[k] = m.eta_f_A * mean / (dx * dx + dy * dy + dz * dz)
     contacts.count[1] = k + 1
 
 
-def find_drag(a, m, x, mid, contacts):
+def find_drag(a, m, x, length, mid, contacts):
     """Fill contacts.drag_nodes and drag_weight from the contacts found, each coupling once."""
     contacts.count[1] = 0
     for k in range(contacts.count[0]):
         e = contacts.edges[k, 0]
         f = contacts.edges[k, 1]
         if m.node_pair:
-            _couple_nodes(a, m, x, a.edges[e, 1], a.edges[f, 1], contacts, e, f, mid)
-            if m.flags & 16 or not _touching(a, m, mid, _edge_before(a, e), _edge_before(a, f)):
-                _couple_nodes(a, m, x, a.edges[e, 0], a.edges[f, 0], contacts, e, f, mid)
+            _couple_nodes(a, m, x, length, e, f, 1, contacts)
+            if not _touching(a, m, mid, _edge_before(a, e), _edge_before(a, f)):
+                _couple_nodes(a, m, x, length, e, f, 0, contacts)
         else:
             d = contacts.count[1]
             contacts.drag_nodes[d, 0] = a.edges[e, 0]

@@ -7,7 +7,8 @@ al. 2008, 2010):
     E_b = 1/2 B   sum_k |kb|^2 / lbar            bend,  kb = 2 t_a x t_b / (1 + t_a . t_b)
     E_t = 1/2 C   sum_k m^2 / lbar               twist, m = theta_b - theta_a + reference twist
 
-with EA the stretching, B = E_b I the bending and C = mu J the twisting stiffness.
+with EA the stretching, B = E_b I the bending and C = mu J the twisting stiffness. With `bend_present` the
+length lbar of the bending energy is the present one, so that curvature is that of the stretched curve.
 """
 
 from __future__ import annotations
@@ -32,7 +33,14 @@ def stretch_energy(a, EA, length):
     return total
 
 
-def bend_energy(a, B, tangent):
+def _bend_length(a, k, present, length):
+    """The length [m] over which hinge k bends."""
+    if present:
+        return 0.5 * (length[a.hinges[k, 0]] + length[a.hinges[k, 1]])
+    return a.hinge_length[k]
+
+
+def bend_energy(a, B, present, length, tangent):
     """E_b [J]; |kb|^2 = 4 (1 - c)/(1 + c) with c = t_a . t_b, without cancellation."""
     total = 0.0
     for k in range(a.hinges.shape[0]):
@@ -42,7 +50,7 @@ def bend_energy(a, B, tangent):
         dy = q[1] - p[1]
         dz = q[2] - p[2]
         half = 0.5 * (dx * dx + dy * dy + dz * dz)
-        total += 0.5 * B * 4.0 * half / (2.0 - half) / a.hinge_length[k]
+        total += 0.5 * B * 4.0 * half / (2.0 - half) / _bend_length(a, k, present, length)
     return total
 
 
@@ -54,7 +62,7 @@ def twist_energy(a, C, m):
     return total
 
 
-def add_elastic_forces(a, EA, B, C, length, tangent, m, force, torque):
+def add_elastic_forces(a, EA, B, C, present, length, tangent, m, force, torque):
     """Add -dE/dx to force (n_nodes, 3) [N] and -dE/dtheta to torque (n_edges,) [N m].
 
     Positions vary at fixed material angle about time-parallel directors, so a hinge's twist changes
@@ -73,7 +81,9 @@ def add_elastic_forces(a, EA, B, C, length, tangent, m, force, torque):
         moment = C * m[k] / a.hinge_length[k]
         torque[p] += moment
         torque[q] -= moment
-        bend = -4.0 * B * s * s / a.hinge_length[k]
+        lbar = _bend_length(a, k, present, length)
+        bend = -4.0 * B * s * s / lbar
+        ease = B * (1.0 - c) * s / (lbar * lbar) if present else 0.0
         nx = (ta[1] * tb[2] - ta[2] * tb[1]) * s * moment
         ny = (ta[2] * tb[0] - ta[0] * tb[2]) * s * moment
         nz = (ta[0] * tb[1] - ta[1] * tb[0]) * s * moment
@@ -82,12 +92,12 @@ def add_elastic_forces(a, EA, B, C, length, tangent, m, force, torque):
         i = a.edges[p, 0]
         j = a.edges[p, 1]
         n = a.edges[q, 1]
-        gax = (bend * (tb[0] - c * ta[0]) + nx) * ra
-        gay = (bend * (tb[1] - c * ta[1]) + ny) * ra
-        gaz = (bend * (tb[2] - c * ta[2]) + nz) * ra
-        gbx = (bend * (ta[0] - c * tb[0]) + nx) * rb
-        gby = (bend * (ta[1] - c * tb[1]) + ny) * rb
-        gbz = (bend * (ta[2] - c * tb[2]) + nz) * rb
+        gax = (bend * (tb[0] - c * ta[0]) + nx) * ra - ease * ta[0]
+        gay = (bend * (tb[1] - c * ta[1]) + ny) * ra - ease * ta[1]
+        gaz = (bend * (tb[2] - c * ta[2]) + nz) * ra - ease * ta[2]
+        gbx = (bend * (ta[0] - c * tb[0]) + nx) * rb - ease * tb[0]
+        gby = (bend * (ta[1] - c * tb[1]) + ny) * rb - ease * tb[1]
+        gbz = (bend * (ta[2] - c * tb[2]) + nz) * rb - ease * tb[2]
         force[i, 0] += gax
         force[i, 1] += gay
         force[i, 2] += gaz

@@ -55,7 +55,7 @@ def neighbour_pairs(a, mid, cutoff, exclusion_edges, exclusion_length):
     cell = np.empty((n, 3), np.int64)
     for e in range(n - 1, -1, -1):
         for c in range(3):
-            cell[e, c] = int(math.floor(mid[e, c] / cutoff))
+            cell[e, c] = math.floor(mid[e, c] / cutoff)
         b = _bucket(cell[e, 0], cell[e, 1], cell[e, 2], mask)
         following[e] = head[b]
         head[b] = e

@@ -1,0 +1,272 @@
+"""Overdamped motion of knotted fibers: M(x) v = F(x), advanced in time (thesis 2.33, 4.1-4.11)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from torsade.assembly import Assembly, Floats, Ints, State
+from torsade.errors import TorsadeError
+from torsade.material import Material, Section
+from torsade.motion import stepping
+from torsade.motion.ends import Boundary
+from torsade.motion.rates import Work, energies, forces
+from torsade.rod.contact import Contacts, Model, compression, contacts_among
+from torsade.rod.kinematics import edge_geometry
+from torsade.rod.neighbours import edge_midpoints, neighbour_pairs
+
+
+@dataclass(frozen=True)
+class Laws:
+    """Which contact and drag laws act, and between which parts of a fiber.
+
+    Attributes
+    ----------
+    area : contact area, `product` of rest lengths or `projected` edge vectors
+    drag : collision drag, `continuum` (thesis 4.8) or `node-pair` (4.6, on present lengths)
+    eta_f_ratio : collision viscosity over internal viscosity, eta_f / eta
+    torque : whether collisions twist (thesis 4.7)
+    spin_drag : whether collisions resist a strand's own spin (the omega term of thesis 4.7)
+    bend_present : whether curvature counts per present arclength instead of rest arclength
+    exclusion_edges : contacts are left out between edges at most so many apart on a fiber
+    exclusion_radii : and between edges nearer than so many radii of rest arclength
+    """
+
+    area: Literal["product", "projected"] = "product"
+    drag: Literal["continuum", "node-pair"] = "continuum"
+    eta_f_ratio: float = 3.3
+    torque: bool = True
+    spin_drag: bool = True
+    bend_present: bool = False
+    exclusion_edges: int = 1
+    exclusion_radii: float = math.pi
+
+
+PUBLISHED = Laws("projected", "node-pair", 1.0, True, False, True, 10, 0.0)
+"""The model of the thesis's own program (projected area, node-pair drag, ten-edge exclusion)."""
+
+STANDARD = Laws()
+"""The converging model: continuum drag with eta_f = 3.3 eta, contact wherever geometry allows it."""
+
+
+def model(material: Material, section: Section, laws: Laws = STANDARD) -> Model:
+    """Coefficients of all forces for a material, a circular section and a choice of laws.
+
+    Raises
+    ------
+    TorsadeError
+        When the material has no viscosity: overdamped motion needs eta > 0.
+    """
+    if not material.eta > 0:
+        raise TorsadeError(
+            f"material {material.name!r} has viscosity eta = {material.eta:g} Pa s; overdamped motion needs "
+            'eta > 0: give one, for example eta = "1e5 Pa s".'
+        )
+    eta_f = laws.eta_f_ratio * material.eta
+    return Model(
+        EA=material.E * section.A,
+        B=material.E_b * section.I,
+        C=material.mu * section.J,
+        K=material.K,
+        p0_squared=50.0,
+        diameter=2 * section.h,
+        eta_A=material.eta * section.A,
+        eta_J=material.eta * section.J,
+        eta_f_A=eta_f * section.A,
+        eta_f_J=eta_f * section.J if laws.torque else 0.0,
+        projected=laws.area == "projected",
+        node_pair=laws.drag == "node-pair",
+        spin_drag=laws.spin_drag,
+        bend_present=laws.bend_present,
+        exclusion_edges=laws.exclusion_edges,
+        exclusion_length=laws.exclusion_radii * section.h,
+    )
+
+
+@dataclass(frozen=True)
+class Stepping:
+    """How time advances.
+
+    Attributes
+    ----------
+    fixed_step : explicit Euler with this step [s]; 0 for error-controlled steps
+    tolerance : local error allowed per step, in radii (positions) and radians (material angles)
+    solver_tolerance : relative error, in dissipated power, of the mobility solve
+    skin : reach of the neighbour list beyond the diameter, in radii
+    move : farthest any node may go in one error-controlled step, in radii
+    """
+
+    fixed_step: float = 0.0
+    tolerance: float = 1e-3
+    solver_tolerance: float = 1e-5
+    skin: float = 0.8
+    move: float = 0.2
+
+
+class Outcome(Enum):
+    """Why a run paused: it reached the time asked for, took the steps asked for, or slipped apart."""
+
+    REACHED = stepping.REACHED
+    PAUSED = stepping.PAUSED
+    SLIPPED = stepping.SLIPPED
+
+
+class Energies(NamedTuple):
+    """Stored energies [J]."""
+
+    stretch: float
+    bend: float
+    twist: float
+    contact: float
+
+    @property
+    def total(self) -> float:
+        """Sum of all [J]."""
+        return self.stretch + self.bend + self.twist + self.contact
+
+
+class Checkpoint(NamedTuple):
+    """Everything that decides how a run goes on, as float64 and int64 arrays."""
+
+    state: State
+    time: Floats
+    counts: Ints
+
+
+class Motion:
+    """Fibers in overdamped motion: a state, what is done to it, and a clock.
+
+    The boundary may be replaced between calls of `advance`. The state is advanced in place; calls that
+    reach the same times from the same checkpoint give the same result, bit for bit.
+    """
+
+    def __init__(
+        self,
+        assembly: Assembly,
+        model: Model,
+        boundary: Boundary,
+        state: State,
+        how: Stepping | None = None,
+    ) -> None:
+        how = how or Stepping()
+        radius = model.diameter / 2
+        self.assembly = assembly
+        self.model = model
+        self.boundary = boundary
+        self.state = state.copy()
+        self.control = stepping.Control(
+            how.fixed_step,
+            how.tolerance * radius,
+            radius,
+            how.solver_tolerance,
+            how.skin * radius,
+            how.move * radius,
+        )
+        self._clock = stepping.Clock(np.zeros(4), np.zeros(5, np.int64), np.zeros(2, np.int64))
+        self._scratch = stepping.stage_work(assembly)
+
+    @property
+    def time(self) -> float:
+        """Present time [s]."""
+        return float(self._clock.time[0])
+
+    @property
+    def external_work(self) -> float:
+        """Work done on the fibers so far [J]."""
+        return float(self._clock.time[2])
+
+    @property
+    def dissipation(self) -> float:
+        """Energy lost to drag so far [J]."""
+        return float(self._clock.time[3])
+
+    @property
+    def steps(self) -> int:
+        """Completed steps."""
+        return int(self._clock.count[0])
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Steps, refused steps, evaluations of the rates and neighbour lists made so far."""
+        names = ("steps", "refused", "evaluations", "neighbour_lists")
+        return dict(zip(names, (int(c) for c in self._clock.count), strict=False))
+
+    def advance(self, until: float, max_steps: int = 2**62) -> Outcome:
+        """Advance to the time until [s], in at most max_steps steps.
+
+        Raises
+        ------
+        TorsadeError
+            When strands would pass through each other (with the place), or no step is short enough.
+        """
+        status = stepping.advance(
+            self.assembly, self.model, self.boundary, self.control, self.state, self._clock,
+            float(until), max_steps, self._scratch,
+        )  # fmt: skip
+        if status in (stepping.CROSSING, stepping.STUCK, stepping.UNSOLVABLE):
+            raise TorsadeError(self._failure(status))
+        return Outcome(status)
+
+    def _failure(self, status: int) -> str:
+        when = f"at t = {self.time:.6g} s"
+        shorter = "shorter fixed step" if self.control.fixed_step > 0 else "smaller tolerance or finer nodes"
+        if status == stepping.CROSSING:
+            places = []
+            for edge in self._clock.culprit:
+                fiber = int(self.assembly.edge_fiber[edge])
+                place = 1e3 * self.state.x[self.assembly.edges[edge, 0]]
+                at = ", ".join(f"{c:.2f}" for c in place)
+                places.append(
+                    f"edge {edge - self.assembly.edge_start[fiber]} of strand {fiber} (near {at} mm)"
+                )
+            return (
+                f"{places[0]} would pass through {places[1]} {when}; strands must stay apart: "
+                f"use a {shorter}, or a smaller force."
+            )
+        if status == stepping.STUCK:
+            return f"no time step is short enough {when}; the motion is too violent: use a smaller force."
+        return (
+            f"the velocities cannot be solved for {when}; check forces and constraints, or use a {shorter}."
+        )
+
+    def energies(self) -> Energies:
+        """Stored energies at the present state."""
+        work, contacts = self._evaluated()
+        out = np.empty(4)
+        energies(self.assembly, self.model, contacts, work, out)
+        return Energies(*(float(e) for e in out))
+
+    def compression(self) -> float:
+        """Total compression force [N]: over every edge, the sum of the contact forces on it."""
+        work, contacts = self._evaluated()
+        return float(compression(self.assembly, self.model, work.length, work.tangent, contacts))
+
+    def contact_pairs(self) -> Ints:
+        """Edges in contact (n_contacts, 2)."""
+        _, contacts = self._evaluated()
+        return np.asarray(contacts.edges[: contacts.count[0]].copy())
+
+    def _evaluated(self) -> tuple[Work, Contacts]:
+        """Forces and contacts at the present state, from a list of exactly the touching pairs."""
+        a, m, s, work = self.assembly, self.model, self.state, self._scratch.work
+        edge_geometry(s.x, a.edges, self._scratch.length, self._scratch.tangent)
+        edge_midpoints(s.x, a.edges, work.mid)
+        pairs = neighbour_pairs(a, work.mid, m.diameter, m.exclusion_edges, m.exclusion_length)
+        contacts = contacts_among(pairs)
+        tangent = self._scratch.tangent
+        forces(a, m, self.boundary, s.x, s.theta, tangent, s.reference_twist, contacts, work)
+        return work, contacts
+
+    def checkpoint(self) -> Checkpoint:
+        """A copy of all that decides how the run goes on."""
+        return Checkpoint(self.state.copy(), self._clock.time.copy(), self._clock.count.copy())
+
+    def restore(self, checkpoint: Checkpoint) -> None:
+        """Go back to a checkpoint of the same assembly."""
+        self.state = checkpoint.state.copy()
+        self._clock.time[:] = checkpoint.time
+        self._clock.count[:] = checkpoint.counts
