@@ -1,0 +1,1 @@
+"""What all tests share: shared helpers are importable as `rod.helpers`."""
