@@ -1,3 +1,68 @@
-"""Geometry, topology and mechanics of twisted elastic fibers."""
+"""Geometry, topology and mechanics of twisted elastic fibers.
+
+>>> import torsade as ts
+>>> spec = ts.protocols.PrisonEscape(knot="reef", force="15 N")
+>>> spec.force
+15.0
+
+`spec.run()` gives a `Result`; `ts.open("reef.zarr")` reads one. Everything is imported when it is used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from torsade import curve, knots, protocols, view
+    from torsade.centerline import Centerline, read_csv, write_csv
+    from torsade.errors import TorsadeError
+    from torsade.material import MATERIALS, Material, Section, material
+    from torsade.results import Result
+    from torsade.results import open_result as open
+
+__all__ = [
+    "MATERIALS",
+    "Centerline",
+    "Material",
+    "Result",
+    "Section",
+    "TorsadeError",
+    "__version__",
+    "curve",
+    "knots",
+    "material",
+    "open",
+    "protocols",
+    "read_csv",
+    "view",
+    "write_csv",
+]
 
 __version__ = "0.1.0"
+
+_MODULES = ("curve", "knots", "protocols", "view")
+_HOMES = {
+    "MATERIALS": "torsade.material",
+    "Centerline": "torsade.centerline",
+    "Material": "torsade.material",
+    "Result": "torsade.results",
+    "Section": "torsade.material",
+    "TorsadeError": "torsade.errors",
+    "read_csv": "torsade.centerline",
+    "write_csv": "torsade.centerline",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _MODULES:
+        return import_module(f"torsade.{name}")
+    if name == "open":
+        return import_module("torsade.results").open_result
+    if name in _HOMES:
+        return getattr(import_module(_HOMES[name]), name)
+    raise AttributeError(f"module 'torsade' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -1,1 +1,10 @@
+"""Experiments: a specification in, a result out. One file each, and `load_spec` to read one from TOML."""
 
+from __future__ import annotations
+
+from torsade.protocols.base import Spec
+from torsade.protocols.files import PROTOCOLS, load_spec
+from torsade.protocols.prison_escape import PrisonEscape
+from torsade.protocols.tighten import Tighten
+
+__all__ = ["PROTOCOLS", "PrisonEscape", "Spec", "Tighten", "load_spec"]

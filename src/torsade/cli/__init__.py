@@ -1,0 +1,47 @@
+"""The command line: `torsade demo`, `torsade run PROTOCOL`. Errors are one sentence and exit code 2."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+
+from torsade.errors import TorsadeError
+
+__all__ = ["main"]
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and exit."""
+    sys.exit(_status(sys.argv[1:] if arguments is None else list(arguments)))
+
+
+def _status(arguments: list[str]) -> int:
+    """Exit code of a command line; anything the user should know has been printed."""
+    from cyclopts import CycloptsError
+
+    from torsade.cli.app import build, with_protocol
+    from torsade.cli.messages import parse_error, say
+
+    try:
+        arguments = with_protocol(arguments)
+        app = build(arguments)
+        try:
+            code = app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+        except CycloptsError as error:
+            raise TorsadeError(parse_error(error, arguments)) from None
+        sys.stdout.flush()
+        return code if isinstance(code, int) else 0
+    except TorsadeError as error:
+        say(str(error))
+        return BAD_INPUT
+    except KeyboardInterrupt as error:
+        say(str(error) or "interrupted before the first frame; nothing is saved")
+        return INTERRUPTED
+    except BrokenPipeError:
+        # Whoever read the output has had enough, as in `torsade run ... | head`.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1

@@ -1,0 +1,154 @@
+"""Commands and their options; those of a protocol are made from its specification."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import App, Group, Parameter
+
+from torsade import __version__
+
+if TYPE_CHECKING:
+    from torsade.protocols.base import Spec
+
+__all__ = ["OPTIONS", "build", "flag", "with_protocol"]
+
+OPTIONS: dict[str, tuple[type, str]] = {
+    "spec": (str, "TOML file with the fields above; options given here replace those in it."),
+    "out": (str, "Write the result to this folder NAME.zarr while it runs."),
+    "picture": (str, "Draw the last frame, coloured by strain, to this PNG file."),
+    "plot": (str, "Plot the history to this file (.png, .pdf or .svg)."),
+    "json": (bool, "Print the numbers as JSON, and nothing else, on the standard output."),
+    "resume": (bool, "Go on with the --out of an interrupted run of the same specification."),
+    "overwrite": (bool, "Replace an earlier result in --out."),
+}
+"""Options of every protocol besides the fields of its specification: type and help text."""
+
+EXAMPLES = {
+    "prison-escape": '--knot reef --force "15 N" --out reef.zarr --picture reef.png',
+    "tighten": '--centerline trefoil.csv --force "20 mN" --out trefoil.zarr',
+}
+
+_WHAT = Group("What to do", sort_key=1)
+_OUTPUT = Group("Input and output", sort_key=2)
+
+
+def flag(name: str) -> str:
+    """The option of a field."""
+    return "--" + name.replace("_", "-")
+
+
+def build(arguments: list[str]) -> App:
+    """The commands; those below `run` only when they are asked for, so that help comes at once."""
+    app = App(
+        name="torsade",
+        help="Geometry, topology and mechanics of twisted elastic fibers.",
+        help_epilogue="Begin with: torsade demo",
+        version=__version__,
+        help_format="plaintext",
+        default_parameter=Parameter(negative=(), show_default=False),
+        suppress_keyboard_interrupt=False,
+    )
+    app.command(_demo, name="demo", help_epilogue="", version_flags=[])
+    run = App(
+        name="run",
+        help="Run an experiment: prison-escape (pull a bend) or tighten (pull a knot in one strand).",
+        help_epilogue="See the options with: torsade run prison-escape --help",
+        version_flags=[],
+    )
+    app.command(run)
+    if arguments[:1] == ["run"]:
+        from torsade.protocols.files import PROTOCOLS
+
+        for name, spec in PROTOCOLS.items():
+            example = f"Example: torsade run {name} {EXAMPLES[name]}"
+            run.command(
+                _protocol_command(spec), name=name, help=_about(spec), help_epilogue=example, version_flags=[]
+            )
+    return app
+
+
+def _about(spec: type[Spec]) -> str:
+    """The docstring of a specification with options in place of fields, one line to a paragraph."""
+    text = re.sub(r"`(\w+)`", lambda m: flag(m[1]), inspect.getdoc(spec) or "")
+    return "\n\n".join(" ".join(paragraph.split()) for paragraph in text.split("\n\n"))
+
+
+def with_protocol(arguments: list[str]) -> list[str]:
+    """`run --spec FILE` names its protocol in the file: put it where a protocol is expected."""
+    if arguments[:1] != ["run"] or len(arguments) < 2 or not arguments[1].startswith("--spec"):
+        return arguments
+    path = arguments[1].removeprefix("--spec").removeprefix("=") or "".join(arguments[2:3])
+    if not path:
+        return arguments
+    from torsade.protocols.files import read_fields
+
+    return ["run", read_fields(path)["protocol"], *arguments[1:]]
+
+
+def _demo(
+    *,
+    out: Annotated[str, Parameter(help="Folder for the files, made when missing [default: demo].")] = "demo",
+    json: Annotated[bool, Parameter(help=OPTIONS["json"][1])] = False,
+) -> int:
+    """Pull a reef knot at 15 N for 1 s; write the result, a picture and a plot, and print a table."""
+    from torsade.cli.commands import demo
+
+    return demo(out, json)
+
+
+def _protocol_command(spec: type[Spec]) -> Callable[..., int]:
+    """A command with one option for every field of a specification, and `OPTIONS`."""
+
+    def command(**given: Any) -> int:
+        from torsade.cli.commands import run
+
+        chosen = {name: value for name, value in given.items() if value is not None}
+        options = {name: chosen.pop(name, None) for name in OPTIONS}
+        return run(spec, chosen, **options)
+
+    parameters = [
+        _option(name, str, _help(spec, name), _WHAT) for name in _ordered(spec) if name != "protocol"
+    ]
+    parameters += [_option(name, kind, text, _OUTPUT) for name, (kind, text) in OPTIONS.items()]
+    command.__signature__ = inspect.Signature(parameters, return_annotation=int)  # type: ignore[attr-defined]
+    command.__annotations__ = {p.name: p.annotation for p in parameters} | {"return": int}
+    return command
+
+
+def _ordered(spec: type[Spec]) -> list[str]:
+    """Fields of the protocol itself first, then those that all have."""
+    own = [name for name in spec.__annotations__ if name in spec.model_fields]
+    return own + [name for name in spec.model_fields if name not in own]
+
+
+def _option(name: str, kind: type, text: str, group: Group) -> inspect.Parameter:
+    # Directions such as -x begin with a hyphen, and so do negative numbers that are to be refused.
+    parameter = Parameter(name=flag(name), help=text, group=group, allow_leading_hyphen=kind is str)
+    annotation = Annotated[kind | None, parameter] if kind is str else Annotated[kind, parameter]
+    return inspect.Parameter(
+        name,
+        inspect.Parameter.KEYWORD_ONLY,
+        default=None if kind is str else False,
+        annotation=annotation,
+    )
+
+
+def _help(spec: type[Spec], name: str) -> str:
+    """Description of a field, with an example of its unit and its default."""
+    from torsade.protocols.base import dimension_of
+
+    field = spec.model_fields[name]
+    dimension = dimension_of(field)
+    meaning, _, rest = (field.description or "").rstrip(".").partition("; ")
+    if dimension is not None:
+        example = field.examples[0] if field.examples else dimension.example
+        meaning += f', such as "{example}"' if dimension.unit else f", such as {example}"
+    text = f"{meaning}; {rest}" if rest else meaning
+    if field.default is None or field.is_required():
+        return text + "."
+    shown = f"{field.default:g} {dimension.unit}".strip() if dimension else str(field.default)
+    return f"{text} [default: {shown}]."

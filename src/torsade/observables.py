@@ -1,0 +1,177 @@
+"""What is measured on fibers: curvature, strain, twist, lengths, and the friction of a pulled bend.
+
+Functions of an assembly and a state return arrays per hinge, node or fiber; functions of recorded
+histories return numbers. Nothing here moves anything.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from torsade.assembly import Assembly, Floats, State
+
+__all__ = [
+    "SETTLED",
+    "Friction",
+    "edge_lengths",
+    "fiber_lengths",
+    "friction",
+    "h_kappa",
+    "hinge_curvature",
+    "hinge_twist",
+    "log_strain",
+    "pull_speed",
+    "twist",
+]
+
+SETTLED = 0.3
+"""Time [s] from which a pulled bend is taken to be tight: the start of the mean pull speed."""
+
+SLIP_RATIO = 2.0
+"""A bend slips when its ends part this many times faster than they did on average since `SETTLED`."""
+
+
+def edge_lengths(assembly: Assembly, state: State) -> Floats:
+    """Present length of every edge [m], shape (n_edges,)."""
+    return np.asarray(np.linalg.norm(_edge_vectors(assembly, state), axis=1))
+
+
+def fiber_lengths(assembly: Assembly, state: State) -> Floats:
+    """Present length of every fiber [m], shape (n_fibers,)."""
+    return _sum_by_fiber(edge_lengths(assembly, state), assembly.edge_start)
+
+
+def hinge_curvature(assembly: Assembly, state: State) -> Floats:
+    """Curvature kappa = |kb|/lbar of every hinge per present arclength [1/m], shape (n_hinges,).
+
+    |kb| = 2 tan(phi/2) with phi the turning angle; lbar is the mean present length of the two edges.
+    """
+    e = _edge_vectors(assembly, state)
+    l = np.linalg.norm(e, axis=1)
+    a, b = assembly.hinges[:, 0], assembly.hinges[:, 1]
+    t = e / l[:, None]
+    curvature_binormal = 2 * np.cross(t[a], t[b]) / (1 + np.sum(t[a] * t[b], axis=1))[:, None]
+    return np.asarray(np.linalg.norm(curvature_binormal, axis=1) / (0.5 * (l[a] + l[b])))
+
+
+def h_kappa(assembly: Assembly, state: State, radius: float) -> Floats:
+    """Curvature in units of 1/h at every hinge, shape (n_hinges,); h is the radius [m]."""
+    return radius * hinge_curvature(assembly, state)
+
+
+def hinge_twist(assembly: Assembly, state: State) -> Floats:
+    """Twist theta_b - theta_a + reference twist of every hinge [rad], shape (n_hinges,)."""
+    a, b = assembly.hinges[:, 0], assembly.hinges[:, 1]
+    return np.asarray(state.theta[b] - state.theta[a] + state.reference_twist)
+
+
+def twist(assembly: Assembly, state: State) -> Floats:
+    """Total twist of every fiber [rad], shape (n_fibers,)."""
+    return _sum_by_fiber(hinge_twist(assembly, state), assembly.hinge_start)
+
+
+def log_strain(assembly: Assembly, state: State, radius: float) -> Floats:
+    """Strain log(1 + √(eps:eps)) on the surface at every node, shape (n_nodes,) (thesis 4.3).
+
+    √(h² theta'²/2 + (h kappa + |x'| - 1)²), with theta' the hinge twist per rest length and |x'| the
+    stretch, averaged over the edges that meet at the node. At the ends of an open fiber kappa and
+    theta' are zero.
+    """
+    node = assembly.hinges[:, 2]
+    h_theta = np.zeros(len(assembly.node_length))
+    h_curvature = np.zeros_like(h_theta)
+    h_theta[node] = radius * hinge_twist(assembly, state) / assembly.hinge_length
+    h_curvature[node] = h_kappa(assembly, state, radius)
+    stretch = edge_lengths(assembly, state) / assembly.rest_length
+    total, meeting = np.zeros_like(h_theta), np.zeros_like(h_theta)
+    np.add.at(total, assembly.edges.ravel(), np.repeat(stretch, 2))
+    np.add.at(meeting, assembly.edges.ravel(), 1.0)
+    extension = h_curvature + total / meeting - 1
+    return np.asarray(np.log1p(np.sqrt(h_theta**2 / 2 + extension**2)))
+
+
+def pull_speed(time: ArrayLike, separation: ArrayLike) -> Floats:
+    """Mean speed of parting over the interval that ends at each frame [m/s], shape (n,); nan at the first.
+
+    Parameters
+    ----------
+    time : (n,) increasing [s]
+    separation : (n,) distance of the pulled end from the clamped one, along the pull [m]
+    """
+    t, s = np.asarray(time, np.float64), np.asarray(separation, np.float64)
+    speed = np.full(len(t), np.nan)
+    speed[1:] = np.diff(s) / np.diff(t)
+    return speed
+
+
+class Friction(NamedTuple):
+    """How a bend resists: c_f, the mean pull speed v [m/s] behind it, and when it slipped [s] or None.
+
+    c_f is None when the ends did not part.
+    """
+
+    c_f: float | None
+    speed: float
+    slipped_at: float | None
+
+
+def friction(
+    time: ArrayLike,
+    separation: ArrayLike,
+    *,
+    force: float,
+    radius: float,
+    eta: float,
+    loose_at: float | None = None,
+) -> Friction:
+    """Topological friction c_f = F 2h/(eta A v) of a pulled bend (thesis 4.6), and when it slips.
+
+    v is the mean pull speed, separation difference over time, from 0.3 s to the end or to slipping.
+    The bend slips at the first frame after 0.3 s over whose interval the pull speed exceeds twice the
+    mean since 0.3 s, or when nothing resists the pull any more, whichever is earlier. When it slips
+    before 0.3 s, or the history is no longer than that, v is the mean from the start.
+
+    Parameters
+    ----------
+    time : (n,) increasing [s]
+    separation : (n,) distance of the pulled end from the clamped one, along the pull [m]
+    force : F [N]
+    radius : h [m]; the area is A = pi h²
+    eta : internal viscosity [Pa s]
+    loose_at : when nothing resisted the pull any more [s], if that happened
+    """
+    t, s = np.asarray(time, np.float64), np.asarray(separation, np.float64)
+    slipped = _first_slip(t, s)
+    if loose_at is not None and (slipped is None or loose_at < slipped):
+        slipped = loose_at
+    end = float(t[-1]) if slipped is None else slipped
+    start = SETTLED if end > SETTLED * (1 + 1e-9) else float(t[0])
+    if not end > start:
+        return Friction(None, math.nan, slipped)
+    first, last = np.interp([start, end], t, s)
+    v = float((last - first) / (end - start))
+    return Friction(2 * force / (eta * math.pi * radius * v) if v > 0 else None, v, slipped)
+
+
+def _first_slip(t: Floats, s: Floats) -> float | None:
+    """The first frame after `SETTLED` that is reached at more than `SLIP_RATIO` times the mean speed."""
+    if not t[-1] > SETTLED:
+        return None
+    mean = (s - np.interp(SETTLED, t, s)) / np.where(t > SETTLED, t - SETTLED, np.inf)
+    with np.errstate(invalid="ignore"):
+        fast = (t > SETTLED * (1 + 1e-9)) & (pull_speed(t, s) > SLIP_RATIO * mean) & (mean > 0)
+    return float(t[np.argmax(fast)]) if fast.any() else None
+
+
+def _edge_vectors(assembly: Assembly, state: State) -> Floats:
+    return np.asarray(state.x[assembly.edges[:, 1]] - state.x[assembly.edges[:, 0]])
+
+
+def _sum_by_fiber(values: Floats, start: ArrayLike) -> Floats:
+    """Sums of consecutive values, offsets (n_fibers + 1,); a fiber without any sums to zero."""
+    cumulative = np.concatenate([[0.0], np.cumsum(values)])
+    return np.diff(cumulative[np.asarray(start)])

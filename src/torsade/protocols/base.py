@@ -1,0 +1,333 @@
+"""What every protocol's specification has in common: fiber, model, resolution, and its messages.
+
+A specification says what to do and nothing about how: it is frozen, holds SI numbers only, and is
+written into every result. Nothing heavy is imported until it runs, so that help texts come at once.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic.fields import FieldInfo
+
+from torsade.errors import TorsadeError
+from torsade.material import Material, Section
+from torsade.material import preset as material_preset
+from torsade.units import Dimension, Length, Number, Pressure, Time, Viscosity
+
+if TYPE_CHECKING:
+    from torsade.assembly import Assembly, Floats, State
+    from torsade.centerline import Centerline
+    from torsade.motion.ends import Boundary
+    from torsade.motion.overdamped import Laws, Stepping
+    from torsade.results import Result
+
+__all__ = ["STANDARD_SPACING", "Experiment", "Progress", "Spec", "dimension_of"]
+
+STANDARD_SPACING = 0.5  # radii
+"""Greatest distance between nodes in the standard preset."""
+
+PUBLISHED_STEP = 1e-4
+"""Fixed time step of the published preset [s]."""
+
+Progress = Callable[[float, str], None]
+"""Called with the share done, from 0 to 1, and what is going on."""
+
+Positive = Field(gt=0)
+
+
+class Experiment(NamedTuple):
+    """A protocol at work on given fibers.
+
+    Attributes
+    ----------
+    boundary : ends and loads
+    measure : state → scalars of one frame, besides those that every protocol records
+    derive : recorded histories (n_frames,) → further histories that follow from them
+    conclude : recorded histories, and the time [s] at which nothing resisted the load any more or None
+        → numbers that belong to the run as a whole
+    catch : called when nothing resists the load: move the state, in place, to where something does, and
+        say whether there is such a place
+    """
+
+    boundary: Boundary
+    measure: Callable[[State], dict[str, float]]
+    derive: Callable[[Mapping[str, Floats]], dict[str, Floats]]
+    conclude: Callable[[Mapping[str, Floats], float | None], dict[str, float]]
+    catch: Callable[[State], bool] = lambda state: False
+
+
+class Spec(BaseModel, ABC):
+    """A protocol's specification: numbers in SI units, given as such or as text with a unit.
+
+    Fields left out (None) take the value of the material or of the preset.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    hints: ClassVar[Mapping[str, str]] = {}
+    """What to say to those who give a field that this protocol does not have."""
+
+    protocol: str
+    material: str = Field(
+        "nylon", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
+    )
+    radius: Annotated[Length, Positive] | None = Field(
+        None, description="Radius h of the fiber; by default the material's."
+    )
+    E: Annotated[Pressure, Positive] | None = Field(
+        None, description="Young's modulus in stretch; by default the material's."
+    )
+    E_b: Annotated[Pressure, Positive] | None = Field(
+        None, description="Young's modulus in bending; by default the material's."
+    )
+    nu: Annotated[Number, Field(gt=-1, lt=0.5)] | None = Field(
+        None, description="Poisson's ratio; by default the material's."
+    )
+    eta: Annotated[Viscosity, Positive] | None = Field(
+        None, description="Internal viscosity; by default the material's."
+    )
+    preset: Literal["standard", "published"] = Field(
+        "standard",
+        description="Model: standard (converging laws, resampled nodes, error-controlled steps) or "
+        "published (the thesis's own program, on the nodes as given).",
+    )
+    duration: Annotated[Time, Positive] = Field(1.0, description="How long to pull.")
+    frames: int = Field(
+        100, ge=1, le=1_000_000, description="Evenly spaced frames to record after the one at t = 0."
+    )
+    spacing: Annotated[Length, Positive] | None = Field(
+        None,
+        description="Greatest distance between nodes; by default half a radius, or the nodes as given when "
+        "published.",
+    )
+    tolerance: Annotated[Number, Positive] | None = Field(
+        None,
+        description="Error allowed per step, in radii and radians; by default the preset's.",
+        examples=["1e-3"],
+    )
+    solver_tolerance: Annotated[Number, Positive] | None = Field(
+        None,
+        description="Relative error of the velocity solve; by default the preset's.",
+        examples=["1e-5"],
+    )
+    fixed_step: Annotated[Time, Positive] | None = Field(
+        None,
+        description="Take explicit steps of this length instead of error-controlled ones.",
+        examples=["1e-4 s"],
+    )
+    eta_f_ratio: Annotated[Number, Field(ge=0)] | None = Field(
+        None,
+        description="Collision viscosity over internal viscosity, eta_f/eta; by default the preset's.",
+        examples=["3.3"],
+    )
+    area: Literal["product", "projected"] | None = Field(
+        None, description="Contact area law, product or projected; by default the preset's."
+    )
+    drag: Literal["continuum", "node-pair"] | None = Field(
+        None, description="Collision drag law, continuum or node-pair; by default the preset's."
+    )
+    exclusion_edges: Annotated[int, Field(ge=1)] | None = Field(
+        None,
+        description="No contact between edges at most so many apart along a fiber; by default the preset's.",
+    )
+    exclusion_radii: Annotated[Number, Field(ge=0)] | None = Field(
+        None,
+        description="No contact between edges nearer than so many radii along a fiber; by default the "
+        "preset's.",
+        examples=["3.14"],
+    )
+
+    if not TYPE_CHECKING:  # a checker sees the signature that the fields make
+
+        def __init__(self, **fields: Any) -> None:
+            """Raises TorsadeError, in one sentence, where pydantic would raise ValidationError."""
+            try:
+                super().__init__(**fields)
+            except ValidationError as error:
+                raise TorsadeError(_sentence(type(self), error)) from None
+
+    @field_validator("material")
+    @classmethod
+    def _known_material(cls, name: str) -> str:
+        material_preset(name)
+        return name
+
+    @model_validator(mode="after")
+    def _one_way_to_step(self) -> Spec:
+        if self.fixed_step is not None and self.tolerance is not None:
+            raise TorsadeError(
+                f"fixed_step ({self.fixed_step:g} s) and tolerance ({self.tolerance:g}) are both given; give "
+                "fixed_step for steps of one length, or tolerance for error-controlled steps"
+            )
+        return self
+
+    @property
+    def h(self) -> float:
+        """Radius of the fiber [m]."""
+        return material_preset(self.material).radius if self.radius is None else self.radius
+
+    @property
+    def section(self) -> Section:
+        """Cross section of the fiber."""
+        return Section(self.h)
+
+    @property
+    def fiber_material(self) -> Material:
+        """The named material with the constants that are given in place of its own."""
+        given = {name: getattr(self, name) for name in ("E", "E_b", "nu", "eta")}
+        own = material_preset(self.material).material
+        return dataclasses.replace(own, **{k: v for k, v in given.items() if v is not None})
+
+    @property
+    def laws(self) -> Laws:
+        """Contact and drag laws: the preset's, and what is given in their place."""
+        from torsade.motion.overdamped import PUBLISHED, STANDARD
+
+        names = ("eta_f_ratio", "area", "drag", "exclusion_edges", "exclusion_radii")
+        given = {name: getattr(self, name) for name in names}
+        base = PUBLISHED if self.preset == "published" else STANDARD
+        return dataclasses.replace(base, **{k: v for k, v in given.items() if v is not None})
+
+    @property
+    def stepping(self) -> Stepping:
+        """How time advances: a fixed step when published, unless a tolerance is given."""
+        from torsade.motion.overdamped import Stepping
+
+        how = Stepping(fixed_step=PUBLISHED_STEP if self.preset == "published" else 0.0)
+        if self.tolerance is not None:
+            how = dataclasses.replace(how, fixed_step=0.0, tolerance=self.tolerance)
+        if self.fixed_step is not None:
+            how = dataclasses.replace(how, fixed_step=self.fixed_step)
+        if self.solver_tolerance is not None:
+            how = dataclasses.replace(how, solver_tolerance=self.solver_tolerance)
+        return how
+
+    @property
+    def node_spacing(self) -> float | None:
+        """Greatest distance between nodes [m]; None to keep the nodes as they are given."""
+        if self.spacing is None and self.preset == "published":
+            return None
+        return STANDARD_SPACING * self.h if self.spacing is None else self.spacing
+
+    def run(
+        self,
+        progress: Progress | None = None,
+        out: str | Path | None = None,
+        *,
+        resume: bool = False,
+        overwrite: bool = False,
+    ) -> Result:
+        """Do what the specification says.
+
+        Parameters
+        ----------
+        progress : called as the run goes on
+        out : a folder NAME.zarr to write while it runs; NAME.zarr.part until it is complete
+        resume : go on with the NAME.zarr.part of an interrupted run of the same specification
+        overwrite : replace an earlier result of that name
+
+        Raises
+        ------
+        TorsadeError
+            When the input is unfit, the output cannot be written, or strands would pass through each
+            other; frames recorded until then stay in NAME.zarr.part.
+        Interrupted
+            On Ctrl-C, after saving what there is.
+        """
+        from torsade.protocols.driving import drive
+
+        return drive(self, progress, out, resume, overwrite)
+
+    @property
+    @abstractmethod
+    def shape_name(self) -> str:
+        """Name of what is pulled, for tables and titles."""
+
+    @abstractmethod
+    def configuration(self) -> Centerline:
+        """Strands at the start, checked, at the resolution of the run."""
+
+    @abstractmethod
+    def experiment(self, assembly: Assembly, state: State) -> Experiment:
+        """What is done to the fibers, which start in this state, and what is measured on them."""
+
+    @classmethod
+    @abstractmethod
+    def report(cls, result: Result) -> dict[str, Any]:
+        """The numbers of a result under the keys of `--json`."""
+
+
+def dimension_of(field: FieldInfo) -> Dimension | None:
+    """What a field of a specification measures; None for names and counts."""
+    found = [m for m in field.metadata if isinstance(m, Dimension)]
+    for choice in get_args(field.annotation):
+        found += [m for m in getattr(choice, "__metadata__", ()) if isinstance(m, Dimension)]
+    return found[0] if found else None
+
+
+def _sentence(spec: type[Spec], error: ValidationError) -> str:
+    """The first of pydantic's complaints, as what was given, what was expected and what to do."""
+    first = error.errors()[0]
+    name = str(first["loc"][0]) if first["loc"] else ""
+    kind, given, context = first["type"], _quote(first["input"]), first.get("ctx", {})
+    reason = context.get("error")
+    if isinstance(reason, TorsadeError):
+        # Messages about quantities begin with what was given; the others name their subject.
+        return f"{name} {reason}" if name and str(reason)[0] in "'\"-0123456789ni[{" else str(reason)
+    if kind == "extra_forbidden":
+        return _unknown_field(spec, name)
+    if kind == "missing":
+        wanted = (spec.model_fields[name].description or "").rstrip(".")
+        return f"{name} is missing; give a {wanted}"
+    if kind == "literal_error":
+        choices = context["expected"].replace("'", "").replace(" or ", ", ").split(", ")
+        near = difflib.get_close_matches(str(first["input"]), choices, n=1)
+        hint = f"did you mean {near[0]!r}? " if near else ""
+        return f"{name} is {given}; {hint}choose one of {', '.join(choices)}"
+    bounds = {
+        "greater_than": ("above", "gt"),
+        "greater_than_equal": ("of at least", "ge"),
+        "less_than": ("below", "lt"),
+        "less_than_equal": ("of at most", "le"),
+    }
+    if kind in bounds:
+        word, key = bounds[kind]
+        field = spec.model_fields[name]
+        dimension = dimension_of(field)
+        what = f"a {dimension.name}" if dimension else "a number"
+        unit = f" {dimension.unit}" if dimension and dimension.unit else ""
+        return f"{name} is {given}; give {what} {word} {context[key]:g}{unit}"
+    return f"{name} is {given}; {_expected(spec, name)}"
+
+
+def _unknown_field(spec: type[Spec], name: str) -> str:
+    if name in spec.hints:
+        return spec.hints[name]
+    known = [k for k in spec.model_fields if k != "protocol"]
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    hint = f"did you mean {near[0]!r}?" if near else f"choose among {', '.join(known)}"
+    return f"{spec.model_fields['protocol'].default} has no field {name!r}; {hint}"
+
+
+def _expected(spec: type[Spec], name: str) -> str:
+    field = spec.model_fields[name]
+    dimension = dimension_of(field)
+    if dimension:
+        return f'give a {dimension.name} such as "{dimension.example}"'
+    text = str(field.annotation)
+    return "give a whole number" if "int" in text else "give text"
+
+
+def _quote(value: object) -> str:
+    if isinstance(value, float) and math.isfinite(value):
+        return f"{value:g}"
+    text = repr(value)
+    return text if len(text) <= 60 else text[:56] + "..." + text[-1]

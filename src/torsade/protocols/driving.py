@@ -1,0 +1,209 @@
+"""Running a specification: fibers set up, moved from frame to frame, measured and recorded."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from torsade import _compile, observables
+from torsade.assembly import Assembly, Floats, State, assemble, initial_state
+from torsade.centerline import Centerline, check, read_csv
+from torsade.curve import resample
+from torsade.errors import TorsadeError
+from torsade.motion.overdamped import Motion, Outcome, model
+from torsade.recording import Recording
+from torsade.results import Result
+
+if TYPE_CHECKING:
+    from torsade.protocols.base import Experiment, Progress, Spec
+
+__all__ = ["Interrupted", "drive", "read_centerline"]
+
+STEPS_AT_ONCE = 2000
+"""Steps between looks at the clock of the screen and at Ctrl-C. Part of what makes runs repeat to the
+bit: the stepper makes a new neighbour list whenever it is called."""
+
+
+COMMON = (
+    "time",
+    "compression",
+    "twist",
+    "energy_stretch",
+    "energy_bend",
+    "energy_twist",
+    "energy_contact",
+    "external_work",
+    "dissipation",
+    "position",
+    "log_strain",
+)
+"""What every protocol records."""
+
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C during a run, after what there is was saved.
+
+    Attributes: `time` reached [s], `frames` recorded, `part`, the folder that holds them, or None.
+    """
+
+    def __init__(self, time: float, frames: int, part: Path | None) -> None:
+        self.time, self.frames, self.part = time, frames, part
+        kept = "nothing is saved" if part is None else f"{frames} frames are saved in {str(part)!r}"
+        super().__init__(f"interrupted at t = {time:.4g} s; {kept}")
+
+
+def read_centerline(path: str, spec: Spec, strands: int, wanted: str) -> Centerline:
+    """Open strands from a CSV file, checked as given, then resampled as the specification wants."""
+    shape = read_csv(path)
+    if len(shape.strands) != strands:
+        other = {1: "tighten takes one", 2: "prison-escape takes two"}.get(len(shape.strands))
+        advice = f"; {other}" if other else ""
+        has = "1 strand" if len(shape.strands) == 1 else f"{len(shape.strands)} strands"
+        raise TorsadeError(f"{path!r} has {has}, and {wanted}{advice or f'; give {strands}'}")
+    check(shape, spec.h)
+    for k, closed in enumerate(shape.closed):
+        if closed:
+            raise TorsadeError(f"strand {k} in {path!r} is closed and has no ends to pull; cut it open")
+    if spec.node_spacing is None:
+        return shape
+    resampled = Centerline(tuple(resample(x, spacing=spec.node_spacing) for x in shape.strands))
+    check(resampled, spec.h)
+    return resampled
+
+
+def drive(
+    spec: Spec, progress: Progress | None, out: str | Path | None, resume: bool, overwrite: bool
+) -> Result:
+    """Run a specification; see `Spec.run`."""
+    tell = progress or (lambda share, note: None)
+    shape = spec.configuration()
+    assembly = assemble(shape.strands, shape.closed)
+    state = initial_state(assembly, shape.strands)
+    experiment = spec.experiment(assembly, state)
+    motion = Motion(
+        assembly,
+        model(spec.fiber_material, spec.section, spec.laws),
+        experiment.boundary,
+        state,
+        spec.stepping,
+    )
+    recording = _begin(spec, assembly, state, experiment, out, resume, overwrite)
+    if recording.complete:
+        return recording.result()
+    try:
+        tell(0.0, "getting ready" if _compiled() else "compiling the kernels, this once (about a minute)")
+        _warm_up(motion)
+        if recording.checkpoint is not None:
+            motion.restore(recording.checkpoint)
+        loose_at = _record(spec, experiment, motion, recording, tell)
+        return recording.finish(experiment.conclude(recording.histories(), loose_at))
+    except KeyboardInterrupt:
+        recording.stop("interrupted")
+        raise Interrupted(motion.time, recording.done, recording.part) from None
+    except TorsadeError as error:
+        if recording.part is None:
+            raise
+        with suppress(TorsadeError):  # a full disk cannot take the last frames either
+            recording.stop("failed")
+        raise TorsadeError(
+            f"{str(error).rstrip('.')} (the frames until then are in {str(recording.part)!r})"
+        ) from None
+
+
+def _begin(
+    spec: Spec,
+    assembly: Assembly,
+    state: State,
+    experiment: Experiment,
+    out: str | Path | None,
+    resume: bool,
+    overwrite: bool,
+) -> Recording:
+    """A recording for all that this protocol measures."""
+    attrs = {
+        "protocol": spec.protocol,
+        "spec": spec.model_dump_json(exclude_none=True),
+        "knot": spec.shape_name,
+        "radius": spec.h,
+        "start": hashlib.sha256(state.x.tobytes()).hexdigest(),
+    }
+    own = experiment.measure(state)
+    first = {name: np.array([value]) for name, value in ({"time": 0.0} | own).items()}
+    return Recording.begin(
+        assembly,
+        spec.frames + 1,
+        (*COMMON, *own, *experiment.derive(first)),
+        attrs,
+        experiment.derive,
+        out,
+        resume=resume,
+        overwrite=overwrite,
+    )
+
+
+def _warm_up(motion: Motion) -> None:
+    """Compile or load every kernel, and leave no trace."""
+    start = motion.checkpoint()
+    motion.advance(0.0)
+    motion.energies()
+    motion.compression()
+    motion.restore(start)
+
+
+def _compiled() -> bool:
+    """Whether an earlier run has left compiled kernels."""
+    return _compile.CACHE is not None and any(_compile.CACHE.rglob("*.nbc"))
+
+
+def _record(
+    spec: Spec, experiment: Experiment, motion: Motion, recording: Recording, tell: Progress
+) -> float | None:
+    """Move from frame to frame to the end; returns when nothing resisted the load any more [s], or None."""
+    times = np.linspace(0.0, spec.duration, spec.frames + 1)
+    began = time.perf_counter() - recording.wall
+    for k in range(recording.done, len(times)):
+        outcome = Outcome.REACHED if k == 0 else _advance(experiment, motion, float(times[k]))
+        tell(motion.time / spec.duration, f"t = {motion.time:.3f} s")
+        slipped = outcome is Outcome.SLIPPED
+        if not slipped or motion.time > times[k - 1]:
+            frame = _frame(experiment, motion, spec.h)
+            recording.add(frame, motion.checkpoint(), time.perf_counter() - began)
+        if slipped:
+            return motion.time
+    return None
+
+
+def _advance(experiment: Experiment, motion: Motion, until: float) -> Outcome:
+    """Advance to a time [s], taking up slack whenever nothing resists the load and something still can."""
+    caught_at = -1
+    outcome = Outcome.PAUSED
+    while outcome is Outcome.PAUSED:
+        outcome = motion.advance(until, STEPS_AT_ONCE)
+        if outcome is Outcome.SLIPPED and motion.steps > caught_at and experiment.catch(motion.state):
+            caught_at = motion.steps
+            outcome = Outcome.PAUSED
+    return outcome
+
+
+def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, float | Floats]:
+    """Everything recorded at the present time."""
+    assembly, state, energies = motion.assembly, motion.state, motion.energies()
+    common: dict[str, float | Floats] = {
+        "time": motion.time,
+        "compression": motion.compression(),
+        "twist": observables.twist(assembly, state),
+        "energy_stretch": energies.stretch,
+        "energy_bend": energies.bend,
+        "energy_twist": energies.twist,
+        "energy_contact": energies.contact,
+        "external_work": motion.external_work,
+        "dissipation": motion.dissipation,
+        "position": state.x,
+        "log_strain": observables.log_strain(assembly, state, radius),
+    }
+    return common | experiment.measure(state)

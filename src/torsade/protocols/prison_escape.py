@@ -1,0 +1,205 @@
+"""Prison escape (thesis 4.6): one end of a two-strand bend is clamped and one is pulled."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from torsade.errors import TorsadeError
+from torsade.protocols.base import Experiment, Positive, Spec
+from torsade.units import Force
+
+if TYPE_CHECKING:
+    from torsade.assembly import Assembly, Floats, State
+    from torsade.centerline import Centerline
+    from torsade.results import Result
+
+__all__ = ["PrisonEscape"]
+
+Direction = Literal["x", "-x", "y", "-y", "z", "-z", "line"]
+
+_AXES = {"x": 0, "y": 1, "z": 2}
+_ENDS = re.compile(r"([AB])([01])([AB])([01])")
+
+
+class PrisonEscape(Spec):
+    """Pull a bend by one end while another is clamped, and see how fast it gives way.
+
+    Strand 0 of a centerline file is A, strand 1 is B; end 0 of a strand is its first node, end 1 its
+    last. Either `knot`, a built-in bend, or `centerline`, a CSV file, says what is pulled.
+    """
+
+    hints: ClassVar[Mapping[str, str]] = {
+        "bend": "prison-escape has no field 'bend'; did you mean 'knot'?",
+        "name": "prison-escape has no field 'name'; did you mean 'knot'?",
+        "file": "prison-escape has no field 'file'; did you mean 'centerline'?",
+        "time": "prison-escape has no field 'time'; did you mean 'duration'?",
+        "dt": "prison-escape has no field 'dt'; did you mean 'fixed_step'?",
+    }
+
+    protocol: Literal["prison-escape"] = "prison-escape"
+    knot: str | None = Field(None, description="Built-in bend: reef, thief, granny or grief.")
+    centerline: str | None = Field(
+        None, description="CSV file of two strands, columns strand,x,y,z [m], in place of a knot."
+    )
+    pulled: str | None = Field(
+        None,
+        description='Clamped end, then pulled end, such as "A1B1"; by default the knot\'s own, or "A0B0" '
+        "for a centerline.",
+    )
+    force: Annotated[Force, Positive] = Field(15.0, description="Force on the pulled end.")
+    direction: Direction = Field(
+        "x", description="Direction of the pull: x, -x, y, -y, z, -z, or line (away from the clamped end)."
+    )
+
+    @field_validator("pulled")
+    @classmethod
+    def _two_ends(cls, text: str | None) -> str | None:
+        if text is None:
+            return None
+        ends = _ENDS.fullmatch(text.strip().upper())
+        if ends is None or ends[1] == ends[3]:
+            raise TorsadeError(
+                f"pulled ends {text!r} are not one end of each strand; give the clamped end, then the "
+                'pulled end, such as "A1B1" or "A0B0"'
+            )
+        return ends[0]
+
+    @model_validator(mode="after")
+    def _knot_or_centerline(self) -> PrisonEscape:
+        if self.knot is not None and self.centerline is not None:
+            raise TorsadeError(
+                f"knot {self.knot!r} and centerline {self.centerline!r} are both given; give one of them"
+            )
+        if self.knot is None and self.centerline is None:
+            raise TorsadeError(
+                'nothing to pull is given; give a knot such as "reef", or a centerline, a CSV file of two '
+                "strands"
+            )
+        return self
+
+    @property
+    def shape_name(self) -> str:
+        """The knot, or the name of the centerline's file."""
+        from pathlib import PurePath
+
+        return self.knot.strip().lower() if self.knot is not None else PurePath(str(self.centerline)).stem
+
+    def configuration(self) -> Centerline:
+        """Two open strands, checked, at the resolution of the run."""
+        from torsade.centerline import Centerline, check
+        from torsade.protocols.driving import read_centerline
+
+        if self.knot is not None:
+            from torsade.knots.stacked import bend
+
+            # The bend does not care which of its two ends is the clamped one.
+            pulled = (
+                self.pulled if self.pulled is None else "".join(sorted((self.pulled[:2], self.pulled[2:])))
+            )
+            built = bend(self.knot, self.h, spacing=self.node_spacing, pulled=pulled)
+            shape = Centerline(built.strands)
+            check(shape, self.h)
+            return shape
+        return read_centerline(str(self.centerline), self, 2, "prison-escape pulls two strands")
+
+    def grips(self) -> tuple[tuple[int, int], tuple[int, int]]:
+        """(strand, end) of the clamped and of the pulled end."""
+        text = self.pulled
+        if text is None:
+            if self.knot is None:
+                text = "A0B0"
+            else:
+                from torsade.knots.stacked import bend
+
+                text = bend(self.knot, self.h).pulled
+        a, i, b, j = ("AB".index(c) if c in "AB" else int(c) for c in text)
+        return (a, i), (b, j)
+
+    def experiment(self, assembly: Assembly, state: State) -> Experiment:
+        """One end clamped, one pulled by a constant force; their distance along the pull measured."""
+        from torsade import observables
+        from torsade.motion import ends
+        from torsade.protocols.slack import take_up_slack
+
+        clamped, pulled = self.grips()
+        first, last = ends.end_node(assembly, *clamped), ends.end_node(assembly, *pulled)
+        axis = self._axis(state.x[last] - state.x[first])
+        boundary = ends.clamp(ends.free(assembly), assembly, *clamped)
+        boundary = ends.pull(boundary, assembly, *pulled, self.force * axis)
+
+        def measure(now: State) -> dict[str, float]:
+            return {"separation": float(axis @ (now.x[last] - now.x[first]))}
+
+        def derive(history: Mapping[str, Floats]) -> dict[str, Floats]:
+            return {"pull_speed": observables.pull_speed(history["time"], history["separation"])}
+
+        def conclude(history: Mapping[str, Floats], loose_at: float | None) -> dict[str, float]:
+            found = observables.friction(
+                history["time"],
+                history["separation"],
+                force=self.force,
+                radius=self.h,
+                eta=self.fiber_material.eta,
+                loose_at=loose_at,
+            )
+            numbers = {
+                "c_f": found.c_f,
+                "pull_speed_m_per_s": found.speed,
+                "slipped_at_s": found.slipped_at,
+            }
+            return {k: v for k, v in numbers.items() if v is not None and math.isfinite(v)}
+
+        def catch(now: State) -> bool:
+            # At first any slack is taken up; once the strands have touched, a gap wider than the fiber
+            # is an escape.
+            reach = 2 * self.h if now.v.any() else math.inf
+            return take_up_slack(assembly, now.x, pulled[0], axis, 2 * self.h, reach)
+
+        if not catch(state.copy()):
+            raise TorsadeError(
+                f"strand {'AB'[pulled[0]]} pulled along {self.direction} never meets strand "
+                f"{'AB'[clamped[0]]}; give two strands that are hooked, or other ends in pulled"
+            )
+        return Experiment(boundary, measure, derive, conclude, catch)
+
+    def _axis(self, apart: Floats) -> Floats:
+        """Unit vector of the pull, which must lead away from the clamped end, `apart` [m] before it."""
+        import numpy as np
+
+        if self.direction == "line":
+            return np.asarray(apart / np.linalg.norm(apart))
+        axis = np.zeros(3)
+        axis[_AXES[self.direction[-1]]] = -1.0 if self.direction[0] == "-" else 1.0
+        if not axis @ apart > 0:
+            clamped, pulled = (f"{'AB'[s]}{e}" for s, e in self.grips())
+            k = int(np.argmax(np.abs(apart)))
+            better = ("-" if apart[k] < 0 else "") + "xyz"[k]
+            raise TorsadeError(
+                f"a pull along {self.direction} drives the pulled end {pulled} towards the clamped end "
+                f"{clamped}; give direction {better!r} or 'line', or other ends in pulled"
+            )
+        return axis
+
+    @classmethod
+    def report(cls, result: Result) -> dict[str, Any]:
+        """The numbers of a result under the keys of `--json`; twist_rad is [strand][time]."""
+        data, attrs = result.dataset, result.dataset.attrs
+        return {
+            "protocol": "prison-escape",
+            "knot": attrs["knot"],
+            "preset": result.spec["preset"],
+            "c_f": attrs.get("c_f"),
+            "pull_speed_m_per_s": attrs.get("pull_speed_m_per_s"),
+            "slipped_at_s": attrs.get("slipped_at_s"),
+            "times_s": data["time"].values.tolist(),
+            "separation_m": data["separation"].values.tolist(),
+            "compression_N": data["compression"].values.tolist(),
+            "twist_rad": data["twist"].values.T.tolist(),
+            "steps": attrs["steps"],
+            "wall_s": attrs["wall_s"],
+        }

@@ -1,0 +1,97 @@
+"""Tighten (thesis 4.3): a knot in one strand is pulled by both of its ends."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from torsade.protocols.base import Experiment, Positive, Spec
+from torsade.units import Force
+
+if TYPE_CHECKING:
+    from torsade.assembly import Assembly, State
+    from torsade.centerline import Centerline
+    from torsade.results import Result
+
+__all__ = ["Tighten"]
+
+
+class Tighten(Spec):
+    """Pull the two ends of one knotted strand apart, along -x and +x, each with the same force.
+
+    The end with the smaller x is pulled along -x.
+    """
+
+    hints: ClassVar[Mapping[str, str]] = {
+        "knot": "tighten has no built-in knots yet; give a centerline, a CSV file of one strand",
+        "bend": "tighten pulls a knot in one strand; give a centerline, or run prison-escape for a bend",
+        "pulled": "tighten pulls both ends, so there is no field 'pulled'; leave it out",
+        "direction": "tighten pulls along -x and +x, so there is no field 'direction'; leave it out",
+        "time": "tighten has no field 'time'; did you mean 'duration'?",
+        "file": "tighten has no field 'file'; did you mean 'centerline'?",
+        "dt": "tighten has no field 'dt'; did you mean 'fixed_step'?",
+    }
+
+    protocol: Literal["tighten"] = "tighten"
+    centerline: str = Field(
+        description="CSV file of one strand, columns strand,x,y,z [m], strand 0 throughout."
+    )
+    material: str = Field(
+        "optomechanical", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
+    )
+    force: Annotated[Force, Positive] = Field(0.02, description="Force on each end.")
+
+    @property
+    def shape_name(self) -> str:
+        """The name of the centerline's file."""
+        return PurePath(self.centerline).stem
+
+    def configuration(self) -> Centerline:
+        """One open strand, checked, at the resolution of the run."""
+        from torsade.protocols.driving import read_centerline
+
+        return read_centerline(self.centerline, self, 1, "tighten pulls one strand by both its ends")
+
+    def experiment(self, assembly: Assembly, state: State) -> Experiment:
+        """Both ends pulled; their distance, the length, the greatest curvature and strain measured."""
+        import numpy as np
+
+        from torsade import observables
+        from torsade.motion import ends
+
+        last = len(state.x) - 1
+        outward = np.array([1.0 if state.x[last, 0] >= state.x[0, 0] else -1.0, 0.0, 0.0])
+        boundary = ends.pull(ends.free(assembly), assembly, 0, 0, -self.force * outward)
+        boundary = ends.pull(boundary, assembly, 0, 1, self.force * outward)
+
+        def measure(now: State) -> dict[str, float]:
+            return {
+                "end_to_end": float(np.linalg.norm(now.x[last] - now.x[0])),
+                "length": float(observables.fiber_lengths(assembly, now)[0]),
+                "h_kappa_max": float(observables.h_kappa(assembly, now, self.h).max()),
+                "total_twist": float(observables.twist(assembly, now)[0]),
+                "max_log_strain": float(observables.log_strain(assembly, now, self.h).max()),
+            }
+
+        return Experiment(boundary, measure, lambda history: {}, lambda history, loose_at: {})
+
+    @classmethod
+    def report(cls, result: Result) -> dict[str, Any]:
+        """The numbers of a result under the keys of `--json`."""
+        data, attrs = result.dataset, result.dataset.attrs
+        return {
+            "protocol": "tighten",
+            "knot": attrs["knot"],
+            "preset": result.spec["preset"],
+            "times_s": data["time"].values.tolist(),
+            "end_to_end_m": data["end_to_end"].values.tolist(),
+            "length_m": data["length"].values.tolist(),
+            "h_kappa_max": data["h_kappa_max"].values.tolist(),
+            "total_twist_rad": data["total_twist"].values.tolist(),
+            "max_log_strain": data["max_log_strain"].values.tolist(),
+            "steps": attrs["steps"],
+            "wall_s": attrs["wall_s"],
+        }

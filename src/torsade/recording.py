@@ -1,0 +1,248 @@
+"""The history of a run as it grows, in memory and, when asked for, on disk."""
+
+from __future__ import annotations
+
+import json
+import platform
+import time
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from torsade import __version__, store
+from torsade.assembly import Assembly, Floats, State
+from torsade.errors import TorsadeError
+from torsade.motion.overdamped import Checkpoint
+from torsade.results import Result
+
+__all__ = ["VARIABLES", "Recording"]
+
+FLUSH_EVERY = 0.5
+"""Least time between writes to disk [s]: frames that come faster are written together."""
+
+VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "time": (("time",), "s", "time"),
+    "separation": (("time",), "m", "pulled end from clamped end, along the pull"),
+    "pull_speed": (("time",), "m/s", "mean speed of parting since the frame before"),
+    "compression": (("time",), "N", "sum over all edges of the contact forces on them"),
+    "end_to_end": (("time",), "m", "distance of the two ends"),
+    "length": (("time",), "m", "present length of the fiber"),
+    "h_kappa_max": (("time",), "", "largest curvature, times the radius"),
+    "total_twist": (("time",), "rad", "twist of the fiber"),
+    "max_log_strain": (("time",), "", "largest log(1 + sqrt(eps:eps))"),
+    "twist": (("time", "fiber"), "rad", "twist of each fiber"),
+    "energy_stretch": (("time",), "J", "stretch energy"),
+    "energy_bend": (("time",), "J", "bending energy"),
+    "energy_twist": (("time",), "J", "twist energy"),
+    "energy_contact": (("time",), "J", "contact energy"),
+    "external_work": (("time",), "J", "work done on the fibers since the start"),
+    "dissipation": (("time",), "J", "energy lost to drag since the start"),
+    "position": (("time", "node", "space"), "m", "node positions"),
+    "log_strain": (("time", "node"), "", "log(1 + sqrt(eps:eps)) on the surface"),
+}
+"""Dimensions, SI unit and meaning of every recorded variable."""
+
+SINGLE_PRECISION = ("position", "log_strain")
+
+Frame = Mapping[str, "float | Floats"]
+
+
+class Recording:
+    """Frames recorded so far, and the exact state behind the last of them.
+
+    Attributes
+    ----------
+    done : frames recorded
+    checkpoint : state and clock at the last of them, None before the first
+    wall : computing time so far [s]
+    complete : whether there is nothing left to do
+    part : the growing folder on disk, or None
+    """
+
+    def __init__(
+        self, assembly: Assembly, frames: int, names: tuple[str, ...], attrs: dict[str, Any]
+    ) -> None:
+        sizes = {
+            "time": frames,
+            "fiber": len(assembly.closed),
+            "node": len(assembly.node_length),
+            "space": 3,
+        }
+        self._arrays: dict[str, NDArray[Any]] = {
+            name: np.full(
+                [sizes[d] for d in VARIABLES[name][0]],
+                np.nan,
+                np.float32 if name in SINGLE_PRECISION else np.float64,
+            )
+            for name in names
+        }
+        self._fixed = {
+            "node_start": ("fiber_bound", assembly.node_start.copy()),
+            "closed": ("fiber", assembly.closed.copy()),
+        }
+        self.attrs = attrs | {"created": _now(), "versions": _versions(), "status": "running"}
+        self.done = 0
+        self.checkpoint: Checkpoint | None = None
+        self.complete = False
+        self.wall = 0.0
+        self.part: Path | None = None
+        self._out: Path | None = None
+        self._written = 0
+        self._flushed = -np.inf
+        self._derive: Callable[[dict[str, Floats]], dict[str, Floats]] = lambda history: {}
+
+    @classmethod
+    def begin(
+        cls,
+        assembly: Assembly,
+        frames: int,
+        names: tuple[str, ...],
+        attrs: dict[str, Any],
+        derive: Callable[[dict[str, Floats]], dict[str, Floats]],
+        out: str | Path | None,
+        *,
+        resume: bool,
+        overwrite: bool,
+    ) -> Recording:
+        """A new recording, or with resume the one that an interrupted run of the same left at `out`.
+
+        attrs must hold all that tells one run from another; derive gives the histories that follow from
+        those recorded.
+        """
+        recording = cls(assembly, frames, names, attrs)
+        recording._derive = derive
+        if out is None:
+            if resume:
+                raise TorsadeError(
+                    "resume needs the place of the earlier run; give out=... (--out NAME.zarr)"
+                )
+            return recording
+        if resume and recording._is_complete(Path(out)):
+            return recording
+        recording._out = store.check_target(out, overwrite)
+        part = store.part_of(recording._out)
+        if resume and part.exists():
+            recording._go_on(part)
+        else:
+            recording.attrs["done"] = 0
+            store.create(recording._dataset(frames), part)
+        recording.part = part
+        return recording
+
+    def _is_complete(self, out: Path) -> bool:
+        """Whether the same run stands complete at `out`; its frames are then taken over."""
+        found = store.attributes(out)
+        if found is None or store.part_of(out).exists():
+            return False
+        _same_run(self.attrs, found, out)
+        self._out, self.complete = out, True
+        return True
+
+    def _go_on(self, part: Path) -> None:
+        """Take over the frames and the state of an interrupted run."""
+        found = store.attributes(part) or {}
+        _same_run(self.attrs, found, part)
+        saved = store.read_restart(part)
+        self.done = self._written = int(saved["done"])
+        self.wall = float(saved["wall"])
+        state = State(*(saved[name] for name in State._fields))
+        self.checkpoint = Checkpoint(state, saved["clock_time"], saved["clock_counts"])
+        self.attrs["created"] = found["created"]
+        store.set_attributes(part, {"done": self.done, "status": "running"})
+        before = Result.open(part).dataset
+        for name, values in self._arrays.items():
+            values[: self.done] = before[name].values
+
+    def add(self, frame: Frame, checkpoint: Checkpoint, wall: float) -> None:
+        """Record a frame, with the state behind it and the computing time so far [s]."""
+        for name, value in frame.items():
+            self._arrays[name][self.done] = value
+        self.checkpoint, self.wall = checkpoint, wall
+        self.done += 1
+        if time.monotonic() - self._flushed > FLUSH_EVERY:
+            self.flush()
+
+    def histories(self) -> dict[str, Floats]:
+        """The recorded scalars so far, shape (done,) or (done, n_fibers)."""
+        return {name: a[: self.done] for name, a in self._arrays.items() if name not in SINGLE_PRECISION}
+
+    def flush(self) -> None:
+        """Write to disk what is not there yet."""
+        if self.done:
+            for name, values in self._derive(self.histories()).items():
+                self._arrays[name][: self.done] = values
+        if self.part is None or self.checkpoint is None:
+            return
+        store.append(self.part, self._arrays, self._written, self.done)
+        clock = {"clock_time": self.checkpoint.time, "clock_counts": self.checkpoint.counts}
+        progress = {"done": np.array(self.done), "wall": np.array(self.wall)}
+        store.write_restart(self.part, self.checkpoint.state._asdict() | clock | progress)
+        store.set_attributes(self.part, self._progress())
+        self._written = self.done
+        self._flushed = time.monotonic()
+
+    def stop(self, status: str) -> None:
+        """Save what there is of a run that did not come to its end, and say why."""
+        self.attrs["status"] = status
+        self.flush()
+
+    def finish(self, numbers: Mapping[str, float]) -> Result:
+        """The result of a run that came to its end, with the numbers that belong to it as a whole."""
+        self.attrs.update({"status": "complete"} | dict(numbers))
+        self.flush()
+        self.attrs.update(self._progress())
+        if self.part is not None and self._out is not None:
+            store.complete(self.part, self._out, self.done, self.attrs)
+        self.complete = True
+        return self.result()
+
+    def result(self) -> Result:
+        """The frames so far as a result."""
+        if self.complete and self.done == 0 and self._out is not None:
+            return Result.open(self._out)
+        self.attrs.update(self._progress())
+        return Result(self._dataset(self.done))
+
+    def _progress(self) -> dict[str, Any]:
+        steps = 0 if self.checkpoint is None else int(self.checkpoint.counts[0])
+        return {"done": self.done, "steps": steps, "wall_s": self.wall, "status": self.attrs["status"]}
+
+    def _dataset(self, frames: int) -> Any:
+        import xarray
+
+        variables: dict[str, Any] = {}
+        for name, values in self._arrays.items():
+            dims, unit, meaning = VARIABLES[name]
+            variables[name] = (dims, values[:frames], {"units": unit, "long_name": meaning})
+        time_axis = {"time": variables.pop("time")}
+        return xarray.Dataset(variables | self._fixed, coords=time_axis, attrs=dict(self.attrs))
+
+
+def _same_run(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) -> None:
+    """Refuse to go on with the frames of another run, naming the first thing that differs."""
+    mine, theirs = json.loads(asked["spec"]), json.loads(found["spec"])
+    for name in sorted(mine.keys() | theirs.keys()):
+        if mine.get(name) != theirs.get(name):
+            raise TorsadeError(
+                f"{str(path)!r} was begun with {name} = {theirs.get(name)!r}, not {mine.get(name)!r}; "
+                "resume with the same specification, or run without resume to begin anew"
+            )
+    if asked["start"] != found.get("start"):
+        raise TorsadeError(
+            f"{str(path)!r} was begun from other node positions; give the same centerline, or run without "
+            "resume to begin anew"
+        )
+
+
+def _now() -> str:
+    return datetime.now(UTC).isoformat(timespec="seconds")
+
+
+def _versions() -> dict[str, str]:
+    packages = {name: version(name) for name in ("numpy", "numba", "zarr")}
+    return {"torsade": __version__, "python": platform.python_version()} | packages

@@ -1,0 +1,119 @@
+"""Results: labelled arrays with what was asked and what came of it, in zarr folders that anyone can open.
+
+A result is an `xarray.Dataset` in SI units. Histories have the dimension `time`; `twist` also `fiber`.
+Frames are `position (time, node, space)` [m] and `log_strain (time, node)`, stored in single precision;
+`node_start (fiber_bound)` says where each fiber begins, `closed (fiber)` which are closed. The
+attributes hold `protocol`, `spec` (JSON), `knot`, `radius` [m], `versions`, `created`, `status`, `done`
+(frames), `steps`, `wall_s`, and what the protocol concludes, such as `c_f`.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from torsade import store
+from torsade.errors import TorsadeError
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["Result", "open_result"]
+
+
+class Result:
+    """What a run gave: the dataset, and the numbers asked for most.
+
+    `open` reads one, complete or still growing; plain `xarray.open_zarr` reads the same folder.
+    """
+
+    def __init__(self, dataset: xarray.Dataset) -> None:
+        self._dataset = dataset
+
+    @classmethod
+    def open(cls, path: str | Path) -> Result:
+        """Read a result from NAME.zarr, or what is done of one from NAME.zarr.part.
+
+        Raises
+        ------
+        TorsadeError
+            When there is no result at that path.
+        """
+        import xarray
+
+        path = Path(path)
+        if store.attributes(path) is None:
+            part = store.part_of(path)
+            if store.attributes(part) is not None:
+                raise TorsadeError(
+                    f"{str(path)!r} is not complete; open {str(part)!r} for what is done of it"
+                )
+            what = "is not a result of torsade" if path.exists() else "does not exist"
+            raise TorsadeError(f"{str(path)!r} {what}; give a folder NAME.zarr written by a run")
+        dataset = xarray.open_dataset(path, engine="zarr", chunks=None)
+        return cls(dataset.isel(time=slice(0, int(dataset.attrs["done"]))))
+
+    @property
+    def dataset(self) -> xarray.Dataset:
+        """The labelled arrays, in SI units."""
+        return self._dataset
+
+    @property
+    def spec(self) -> dict[str, Any]:
+        """The specification: fields that were given or have defaults, in SI units."""
+        return dict(json.loads(self._dataset.attrs["spec"]))
+
+    @property
+    def protocol(self) -> str:
+        """The protocol that was run."""
+        return str(self._dataset.attrs["protocol"])
+
+    @property
+    def complete(self) -> bool:
+        """Whether the run came to its end."""
+        return bool(self._dataset.attrs["status"] == "complete")
+
+    @property
+    def frames(self) -> int:
+        """Recorded frames."""
+        return int(self._dataset.sizes["time"])
+
+    @property
+    def c_f(self) -> float | None:
+        """Topological friction F 2h/(eta A v) of a pulled bend; None where it is not known."""
+        return self._number("c_f")
+
+    @property
+    def slipped_at(self) -> float | None:
+        """When a pulled bend slipped [s]; None while it holds."""
+        return self._number("slipped_at_s")
+
+    def save(self, path: str | Path, overwrite: bool = False) -> Path:
+        """Write the result to a folder NAME.zarr.
+
+        Raises
+        ------
+        TorsadeError
+            When the folder cannot be written, or exists and is not a result that may be overwritten.
+        """
+        out = store.check_target(path, overwrite)
+        part = store.part_of(out)
+        # Loaded first: the result may be the one that is replaced.
+        store.create(self._dataset.load(), part)
+        store.complete(part, out, self.frames, {})
+        return out
+
+    def _number(self, name: str) -> float | None:
+        value = self._dataset.attrs.get(name)
+        return None if value is None else float(value)
+
+    def __repr__(self) -> str:
+        attrs = self._dataset.attrs
+        last = float(self._dataset["time"][-1]) if self.frames else 0.0
+        return f"<Result of {attrs['protocol']} on {attrs['knot']}: {self.frames} frames to t = {last:.4g} s>"
+
+
+def open_result(path: str | Path) -> Result:
+    """Read a result; see `Result.open`."""
+    return Result.open(path)
