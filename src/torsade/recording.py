@@ -119,7 +119,7 @@ class Recording:
         if out is None:
             if resume:
                 raise TorsadeError(
-                    "resume needs the place of the earlier run; give out=... (--out NAME.zarr)"
+                    'resume needs the place of the earlier run; give out="NAME.zarr" (--out NAME.zarr)'
                 )
             return recording
         if resume and recording._is_complete(Path(out)):

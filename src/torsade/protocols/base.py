@@ -275,7 +275,9 @@ def dimension_of(field: FieldInfo) -> Dimension | None:
 
 def _sentence(spec: type[Spec], error: ValidationError) -> str:
     """The first of pydantic's complaints, as what was given, what was expected and what to do."""
-    first = error.errors()[0]
+    complaints = error.errors()
+    # A misspelt field explains the one that is missing.
+    first = next((c for c in complaints if c["type"] == "extra_forbidden"), complaints[0])
     name = str(first["loc"][0]) if first["loc"] else ""
     kind, given, context = first["type"], _quote(first["input"]), first.get("ctx", {})
     reason = context.get("error")

@@ -29,6 +29,13 @@ STEPS_AT_ONCE = 2000
 bit: the stepper makes a new neighbour list whenever it is called."""
 
 
+SETTLING = 10
+"""Fixed steps for which strands that just met are advanced in error-controlled steps instead.
+
+Where few contacts bear the whole load they give way within less than a fixed step. Doubling or tripling
+this moves the separation of the built-in bends at 0.3 s by less than 1e-4 of itself.
+"""
+
 COMMON = (
     "time",
     "compression",
@@ -186,8 +193,21 @@ def _advance(experiment: Experiment, motion: Motion, until: float) -> Outcome:
         outcome = motion.advance(until, STEPS_AT_ONCE)
         if outcome is Outcome.SLIPPED and motion.steps > caught_at and experiment.catch(motion.state):
             caught_at = motion.steps
-            outcome = Outcome.PAUSED
+            outcome = _settle(motion, until)
     return outcome
+
+
+def _settle(motion: Motion, until: float) -> Outcome:
+    """Let strands that just met settle: for `SETTLING` fixed steps the steps are error-controlled."""
+    control = motion.control
+    if control.fixed_step == 0.0:
+        return Outcome.PAUSED
+    motion.control = control._replace(fixed_step=0.0)
+    try:
+        outcome = motion.advance(min(until, motion.time + SETTLING * control.fixed_step))
+    finally:
+        motion.control = control
+    return outcome if motion.time >= until or outcome is Outcome.SLIPPED else Outcome.PAUSED
 
 
 def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, float | Floats]:

@@ -1,0 +1,151 @@
+"""Bad input from the real shell: exit code 2, one sentence on the error stream, no traceback."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import torsade as ts
+
+H = 2e-4
+
+
+def shell(*arguments: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "torsade", *arguments], capture_output=True, text=True, cwd=cwd, check=False
+    )
+
+
+def refusal(*arguments: str, cwd: Path | None = None) -> str:
+    """The sentence after "torsade: " of a command that must be refused."""
+    done = shell(*arguments, cwd=cwd)
+    assert done.returncode == 2, done
+    assert done.stdout == ""
+    assert "Traceback" not in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert done.stderr.startswith("torsade: ")
+    assert ". " not in done.stderr.strip()
+    return done.stderr.removeprefix("torsade: ").strip()
+
+
+BEND = ("run", "prison-escape")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        ((*BEND, "--knot", "reef", "--force", "-15 N"), "give a force above 0 N"),
+        ((*BEND, "--knot", "reef", "--force", "15 kg"), "is a mass, not a force"),
+        ((*BEND, "--knot", "reef", "--duration", "1 sek"), "unknown unit 'sek'"),
+        ((*BEND, "--knot", "reef", "--force", "nan"), "not a finite number"),
+        ((*BEND, "--knot", "reef", "--force", "15", "N"), "quote values with units"),
+        ((*BEND, "--knot", "reef", "--preset", "publishd"), "did you mean 'published'?"),
+        ((*BEND, "--knot", "reff"), "the nearest name is 'reef'"),
+        ((*BEND, "--knot", "reef", "--materail", "nylon"), "did you mean --material?"),
+        ((*BEND, "--knot", "reef", "--force"), "--force has no value"),
+        (
+            (*BEND, "--knot", "reef", "--direction", "-x"),
+            "drives the pulled end B1 towards the clamped end A1",
+        ),
+        ((*BEND, "--knot", "reef", "--out", "reef"), "give a name that ends in .zarr"),
+        ((*BEND, "--knot", "reef", "--out", "no/such/reef.zarr"), "there is no folder"),
+        ((*BEND, "--knot", "reef", "--plot", "no/such/reef.png"), "cannot write 'no/such/reef.png'"),
+        ((*BEND, "--knot", "reef", "--resume"), "(--out NAME.zarr)"),
+        ((*BEND, "--centerline", "none.csv"), "there is no file 'none.csv'"),
+        ((*BEND, "--spec", "none.toml"), "there is no file 'none.toml'"),
+        (BEND, "nothing to pull is given"),
+        (("run", "prison"), "did you mean 'prison-escape'?"),
+        (("run", "tighten", "--knot", "trefoil"), "give a centerline, a CSV file of one strand"),
+        (("run", "reef.toml"), "give a file with --spec reef.toml"),
+        (("tighten",), "give torsade run tighten"),
+        (("dmeo",), "did you mean 'demo'?"),
+        (("--hlep",), "did you mean '--help'?"),
+        (("demo", "--force", "3"), "demo has no option --force"),
+    ],
+)
+def test_options(tmp_path: Path, arguments: Sequence[str], says: str) -> None:
+    assert says in refusal(*arguments, cwd=tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def hooked() -> list[np.ndarray]:
+    """Two straight strands side by side, a diameter and a half apart."""
+    x = np.outer(np.arange(40) * H, [1.0, 0.0, 0.0])
+    return [x, x + np.array([0.0, 3 * H, 0.0])]
+
+
+def bad_nan(strands: list[np.ndarray]) -> list[np.ndarray]:
+    strands[1][7, 2] = np.nan
+    return strands
+
+
+def bad_repeat(strands: list[np.ndarray]) -> list[np.ndarray]:
+    strands[0] = np.insert(strands[0], 5, strands[0][5], axis=0)
+    return strands
+
+
+def bad_single(strands: list[np.ndarray]) -> list[np.ndarray]:
+    return [strands[0], strands[1][:1]]
+
+
+def bad_overlap(strands: list[np.ndarray]) -> list[np.ndarray]:
+    return [strands[0], strands[0] + np.array([0.0, 0.2 * H, 0.0])]
+
+
+def bad_apart(strands: list[np.ndarray]) -> list[np.ndarray]:
+    return [strands[0], strands[1] + np.array([1.0, 0.0, 0.0])]
+
+
+@pytest.mark.parametrize(
+    ("spoil", "says"),
+    [
+        (bad_nan, "give a finite number"),
+        (bad_repeat, "are the same point"),
+        (bad_single, "has only one node; give at least 2"),
+        (bad_overlap, "strands 0 and 1 interpenetrate"),
+        (bad_apart, "never meets strand A"),
+    ],
+)
+def test_centerlines(tmp_path: Path, spoil: object, says: str) -> None:
+    assert callable(spoil)
+    ts.write_csv(ts.Centerline(tuple(spoil(hooked()))), tmp_path / "bad.csv")
+    assert says in refusal(*BEND, "--centerline", "bad.csv", cwd=tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('protocol = "prison-escape"\nknot = "reef"\nforec = "1 N"\n', "did you mean 'force'?"),
+        ('protocol = "prison-escape"\nknot = "reef"\nforce = "1 m"\n', "is a length, not a force"),
+        ('protocol = "tighten"\ncenterline = "a.csv"\n', "is a specification of tighten"),
+        ("protocol = prison-escape\n", "is not TOML"),
+    ],
+)
+def test_specification_files(tmp_path: Path, text: str, says: str) -> None:
+    (tmp_path / "bad.toml").write_text(text)
+    assert says in refusal(*BEND, "--spec", "bad.toml", cwd=tmp_path)
+
+
+def test_an_earlier_result_is_not_overwritten(tmp_path: Path) -> None:
+    (tmp_path / "mine.zarr").write_text("something else")
+    assert "is not a result of torsade" in refusal(
+        *BEND, "--knot", "reef", "--out", "mine.zarr", cwd=tmp_path
+    )
+    assert (tmp_path / "mine.zarr").read_text() == "something else"
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="needs a folder that even root cannot write")
+def test_a_folder_that_cannot_be_written() -> None:
+    assert "cannot write '/proc/reef.zarr'" in refusal(*BEND, "--knot", "reef", "--out", "/proc/reef.zarr")
+
+
+@pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="root can write anywhere")
+def test_a_read_only_folder(tmp_path: Path) -> None:
+    tmp_path.chmod(0o500)
+    assert "permission denied" in refusal(*BEND, "--knot", "reef", "--out", str(tmp_path / "reef.zarr"))

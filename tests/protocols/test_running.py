@@ -1,0 +1,160 @@
+"""Runs: frames and numbers that agree, interruption, resuming to the bit, slack."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+
+import torsade as ts
+from torsade.assembly import assemble
+from torsade.protocols import PrisonEscape, Tighten
+from torsade.protocols.driving import Interrupted
+from torsade.protocols.slack import take_up_slack
+
+SHORT = PrisonEscape(knot="reef", duration="10 ms", frames=8)
+
+
+@pytest.fixture(scope="module")
+def short() -> ts.Result:
+    return SHORT.run()
+
+
+def test_frames_are_even_and_start_at_zero(short: ts.Result) -> None:
+    np.testing.assert_allclose(short.dataset["time"], np.linspace(0, 0.01, 9), rtol=1e-12)
+    assert short.complete
+    assert np.isfinite(short.dataset["position"]).all()
+    assert np.isfinite(short.dataset["log_strain"]).all()
+
+
+def test_measured_separation_is_that_of_the_stored_ends(short: ts.Result) -> None:
+    x = short.dataset["position"].values
+    start = short.dataset["node_start"].values
+    # A1 clamped, B1 pulled along x; positions are stored in single precision.
+    apart = x[:, start[2] - 1, 0] - x[:, start[1] - 1, 0]
+    np.testing.assert_allclose(short.dataset["separation"], apart, rtol=1e-6)
+
+
+def test_work_is_stored_or_dissipated(short: ts.Result) -> None:
+    data = short.dataset
+    stored = sum(data[f"energy_{kind}"] for kind in ("stretch", "bend", "twist", "contact"))
+    balance = (data["external_work"] - data["dissipation"]).values
+    np.testing.assert_allclose(balance, stored - stored[0], atol=0.02 * float(data["external_work"][-1]))
+
+
+def test_the_report_has_the_promised_keys(short: ts.Result) -> None:
+    report = PrisonEscape.report(short)
+    keys = "c_f pull_speed_m_per_s slipped_at_s times_s separation_m compression_N twist_rad steps wall_s"
+    assert set(keys.split()) <= report.keys()
+    assert report["slipped_at_s"] is None
+    assert np.shape(report["twist_rad"]) == (2, 9)
+    speed = (report["separation_m"][-1] - report["separation_m"][0]) / 0.01
+    assert report["pull_speed_m_per_s"] == pytest.approx(speed)
+
+
+def test_the_same_run_twice_is_the_same_to_the_bit(short: ts.Result) -> None:
+    assert SHORT.run().dataset.equals(short.dataset)
+
+
+def test_ctrl_c_keeps_the_frames_and_resuming_changes_no_bit(tmp_path: Path, short: ts.Result) -> None:
+    out = tmp_path / "reef.zarr"
+
+    def stop(share: float, note: str) -> None:
+        if share > 0.4:
+            raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted, match=r"interrupted at t = 0.005 s; 4 frames are saved in"):
+        SHORT.run(stop, out)
+    part = ts.open(tmp_path / "reef.zarr.part")
+    assert part.frames == 4
+    assert not part.complete
+    assert part.dataset["position"].equals(short.dataset["position"][:4])
+    with pytest.raises(ts.TorsadeError, match="is not complete; open"):
+        ts.open(out)
+    resumed = SHORT.run(out=out, resume=True)
+    assert resumed.dataset.equals(short.dataset)
+    assert ts.open(out).dataset.equals(short.dataset)
+    assert not (tmp_path / "reef.zarr.part").exists()
+
+
+KILLED = """
+import os, signal, sys
+import torsade as ts
+from torsade import recording
+recording.FLUSH_EVERY = 0.0
+def stop(share, note):
+    if share > 0.6:
+        os.kill(os.getpid(), signal.SIGKILL)
+ts.protocols.PrisonEscape(knot="reef", duration="10 ms", frames=8).run(stop, sys.argv[1])
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
+def test_a_killed_run_can_be_read_and_resumed_to_the_bit(tmp_path: Path, short: ts.Result) -> None:
+    out = tmp_path / "reef.zarr"
+    done = subprocess.run([sys.executable, "-c", KILLED, str(out)], check=False)
+    assert done.returncode == -signal.SIGKILL
+    part = ts.open(tmp_path / "reef.zarr.part")
+    assert part.frames == 5
+    assert part.dataset.equals(short.dataset.isel(time=slice(0, 5)))
+    plain = xarray.open_zarr(tmp_path / "reef.zarr.part", chunks=None)
+    assert plain.attrs["done"] == 5
+    np.testing.assert_array_equal(plain["separation"][:5], short.dataset["separation"][:5])
+    assert SHORT.run(out=out, resume=True).dataset.equals(short.dataset)
+
+
+def test_resuming_something_else_is_refused(tmp_path: Path) -> None:
+    out = tmp_path / "reef.zarr"
+
+    def stop(share: float, note: str) -> None:
+        if share > 0.2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted):
+        SHORT.run(stop, out)
+    other = PrisonEscape(knot="reef", duration="10 ms", frames=8, force=14)
+    with pytest.raises(ts.TorsadeError, match=r"was begun with force = 15.0, not 14.0; resume with the same"):
+        other.run(out=out, resume=True)
+    assert ts.open(tmp_path / "reef.zarr.part").frames == 2
+    assert other.run(out=out).complete  # without resume it begins anew
+
+
+def test_a_complete_run_is_not_run_again(tmp_path: Path) -> None:
+    out = tmp_path / "reef.zarr"
+    spec = PrisonEscape(knot="reef", duration="1 ms", frames=2)
+    first = spec.run(out=out)
+    assert spec.run(out=out, resume=True).dataset.attrs["created"] == first.dataset.attrs["created"]
+    with pytest.raises(ts.TorsadeError, match="exists already; give another name"):
+        spec.run(out=out)
+    assert spec.run(out=out, overwrite=True).complete
+    assert [p.name for p in tmp_path.iterdir()] == ["reef.zarr"]
+
+
+def test_a_one_strand_knot(bends: Path) -> None:
+    spec = Tighten(centerline=str(bends / "trefoil.csv"), duration="10 ms", frames=2)
+    result = spec.run()
+    report = Tighten.report(result)
+    keys = "times_s end_to_end_m length_m h_kappa_max total_twist_rad max_log_strain steps wall_s"
+    assert set(keys.split()) <= report.keys()
+    assert all(len(report[k]) == 3 for k in keys.split()[:6])
+    strain = result.dataset["log_strain"].max("node")
+    np.testing.assert_allclose(report["max_log_strain"], strain, rtol=1e-6)
+
+
+def test_slack_is_taken_up_to_the_first_touch() -> None:
+    a = np.outer(np.arange(-3, 4) * 1e-4, [0.0, 1.0, 0.0])
+    b = np.outer(np.arange(-3, 4) * 1e-4, [0.0, 0.0, 1.0]) + np.array([-2e-3, 0.0, 0.0])
+    assembly = assemble([a, b])
+    x = np.concatenate([a, b])
+    assert take_up_slack(assembly, x, 1, np.array([1.0, 0, 0]), 4e-4)
+    # Midpoints half an edge off either axis are the first to touch, just within the diameter.
+    gap = np.sqrt((4e-4 * (1 - 1e-3)) ** 2 - 2 * (0.5e-4) ** 2)
+    np.testing.assert_allclose(x[7:, 0], -gap, rtol=1e-12)
+    np.testing.assert_array_equal(x[:7], a)
+    assert not take_up_slack(assembly, x, 1, np.array([-1.0, 0, 0]), 3e-4)
+    assert take_up_slack(assembly, x, 1, np.array([-1.0, 0, 0]), 4e-4)  # touches already

@@ -1,0 +1,181 @@
+"""Specifications: units, defaults, refusals in one sentence, and TOML files."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import torsade as ts
+from torsade.motion.overdamped import PUBLISHED, STANDARD
+from torsade.protocols import PrisonEscape, Tighten, load_spec
+from torsade.protocols.files import merged
+
+
+def test_defaults_are_the_thesis_s() -> None:
+    bend = PrisonEscape(knot="reef")
+    assert (bend.force, bend.duration, bend.frames, bend.material, bend.h) == (15.0, 1.0, 100, "nylon", 2e-4)
+    knot = Tighten(centerline="trefoil.csv")
+    assert (knot.force, knot.duration, knot.material) == (0.02, 1.0, "optomechanical")
+    assert bend.laws == STANDARD
+    assert bend.stepping.fixed_step == 0
+
+
+def test_units_become_si() -> None:
+    spec = PrisonEscape(knot="reef", force="1 kgf", duration="20 ms", radius="0.3 mm", E_b="200 MPa")
+    assert spec.force == 9.80665
+    assert spec.duration == 0.02
+    assert (spec.h, spec.fiber_material.E_b) == (3e-4, 2e8)
+
+
+def test_the_published_preset_and_what_overrides_it() -> None:
+    spec = PrisonEscape(knot="reef", preset="published")
+    assert spec.laws == PUBLISHED
+    assert spec.stepping.fixed_step == 1e-4
+    assert spec.node_spacing is None
+    spec = PrisonEscape(knot="reef", preset="published", drag="continuum", eta_f_ratio=3.3, tolerance=1e-4)
+    assert (spec.laws.drag, spec.laws.eta_f_ratio, spec.laws.area) == ("continuum", 3.3, "projected")
+    assert (spec.stepping.fixed_step, spec.stepping.tolerance) == (0.0, 1e-4)
+
+
+def test_a_specification_is_frozen_and_survives_json() -> None:
+    spec = PrisonEscape(knot="reef", force="10 N")
+    with pytest.raises(ValueError, match="frozen"):
+        spec.force = 3.0  # type: ignore[misc]
+    assert PrisonEscape.model_validate_json(spec.model_dump_json()) == spec
+
+
+@pytest.mark.parametrize(
+    ("fields", "says"),
+    [
+        ({"knot": "reef", "force": -15}, "force is -15; give a force above 0 N"),
+        ({"knot": "reef", "force": "15 kg"}, "force '15 kg' is a mass, not a force"),
+        ({"knot": "reef", "force": math.nan}, "force nan is not a finite number"),
+        ({"knot": "reef", "force": [1]}, "force [1] is not a number"),
+        (
+            {"knot": "reef", "preset": "publishd"},
+            "did you mean 'published'? choose one of standard, published",
+        ),
+        ({"knot": "reef", "frames": 0}, "frames is 0; give a number of at least 1"),
+        ({"knot": "reef", "frames": 1.5}, "frames is 1.5; give a whole number"),
+        ({"knot": "reef", "material": "nilon"}, "did you mean 'nylon'?"),
+        ({"knot": "reef", "nu": 0.5}, "nu is 0.5; give a number below 0.5"),
+        ({"knot": "reef", "forc": 1}, "no field 'forc'; did you mean 'force'?"),
+        ({"knot": "reef", "zzz": 1}, "choose among"),
+        ({"knot": "reef", "pulled": "A1A0"}, "not one end of each strand"),
+        ({"knot": "reef", "direction": "w"}, "choose one of x, -x, y, -y, z, -z, line"),
+        ({"knot": "reef", "centerline": "a.csv"}, "are both given; give one of them"),
+        ({"knot": "reef", "tolerance": 1e-3, "fixed_step": 1e-4}, "are both given"),
+        ({}, "nothing to pull is given"),
+    ],
+)
+def test_bad_fields_are_refused_in_one_sentence(fields: dict[str, Any], says: str) -> None:
+    with pytest.raises(ts.TorsadeError) as caught:
+        PrisonEscape(**fields)
+    assert says in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_tighten_says_what_it_does_not_have() -> None:
+    with pytest.raises(ts.TorsadeError, match="no built-in knots yet; give a centerline"):
+        Tighten(knot="trefoil")  # type: ignore[call-arg]
+    with pytest.raises(ts.TorsadeError, match="centerline is missing; give a CSV file"):
+        Tighten()  # type: ignore[call-arg]
+
+
+# --- what a specification makes
+
+
+def test_strands_are_resampled_unless_published(bends: Path) -> None:
+    given = len(ts.read_csv(bends / "reef.csv").strands[0])
+    spec = PrisonEscape(centerline=str(bends / "reef.csv"))
+    x = spec.configuration().strands[0]
+    assert np.linalg.norm(np.diff(x, axis=0), axis=1).max() <= 0.5 * spec.h * (1 + 1e-9)
+    published = spec.model_copy(update={"preset": "published"})
+    assert len(published.configuration().strands[0]) == given
+
+
+@pytest.mark.parametrize(
+    ("protocol", "file", "says"),
+    [
+        (PrisonEscape, "trefoil.csv", "has 1 strand, and prison-escape pulls two strands; tighten takes one"),
+        (Tighten, "reef.csv", "has 2 strands, and tighten pulls one strand by both its ends"),
+    ],
+)
+def test_the_wrong_number_of_strands(bends: Path, protocol: type[Any], file: str, says: str) -> None:
+    with pytest.raises(ts.TorsadeError, match=says):
+        protocol(centerline=str(bends / file)).run()
+
+
+def test_strands_that_never_meet_are_refused(tmp_path: Path) -> None:
+    x = np.outer(np.linspace(0, 1e-2, 60), [1.0, 0, 0])
+    shape = ts.Centerline((x, x + np.array([2e-2, 3e-3, 0])))
+    ts.write_csv(shape, tmp_path / "apart.csv")
+    with pytest.raises(
+        ts.TorsadeError, match="strand B pulled along x never meets strand A; give two strands"
+    ):
+        PrisonEscape(centerline=str(tmp_path / "apart.csv")).run()
+
+
+def test_specifications_import_nothing_heavy() -> None:
+    script = (
+        "import sys, torsade.protocols; print([m for m in ('numba', 'xarray', 'zarr') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+# --- TOML
+
+
+def test_a_file_with_units(tmp_path: Path) -> None:
+    path = tmp_path / "reef.toml"
+    path.write_text('protocol = "prison-escape"\nknot = "reef"\nforce = "12 N"\nduration = "50 ms"\n')
+    spec = load_spec(path)
+    assert isinstance(spec, PrisonEscape)
+    assert (spec.force, spec.duration) == (12.0, 0.05)
+
+
+def test_a_centerline_is_looked_for_beside_the_file(tmp_path: Path) -> None:
+    (tmp_path / "mine.csv").write_text("strand,x,y,z\n")
+    (tmp_path / "mine.toml").write_text('protocol = "tighten"\ncenterline = "mine.csv"\n')
+    spec = load_spec(tmp_path / "mine.toml")
+    assert isinstance(spec, Tighten)
+    assert spec.centerline == str(tmp_path / "mine.csv")
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ('protocol = "prison-escape"\nknot = "reef"\nduratoin = "1 s"\n', "did you mean 'duration'?"),
+        ('protocol = "prison-escap"\n', "did you mean 'prison-escape'?"),
+        ('knot = "reef"\n', "names no protocol; add a line"),
+        ("protocol = prison-escape\n", "is not TOML"),
+    ],
+)
+def test_files_that_cannot_be_read(tmp_path: Path, text: str, says: str) -> None:
+    path = tmp_path / "bad.toml"
+    path.write_text(text)
+    with pytest.raises(ts.TorsadeError) as caught:
+        load_spec(path)
+    assert says in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_file_is_named() -> None:
+    with pytest.raises(ts.TorsadeError, match=r"there is no file 'none.toml'"):
+        load_spec("none.toml")
+
+
+def test_what_is_given_replaces_what_it_excludes() -> None:
+    fields = {"knot": "reef", "fixed_step": 1e-4, "force": 3}
+    assert merged(fields, {"centerline": "a.csv", "tolerance": "1e-3"}) == {
+        "force": 3,
+        "centerline": "a.csv",
+        "tolerance": "1e-3",
+    }
