@@ -139,7 +139,7 @@ def test_link_without_contact_and_with_fixed_steps():
 def test_directors_stay_orthonormal_and_tell_the_reference_twist():
     """After many steps directors are unit and normal to their edge to round-off."""
     motion, _ = tangled_motion(1, drive=moved, turns=1.0)
-    motion.advance(50 * TAU)
+    motion.advance(20 * TAU)
     s, a = motion.state, motion.assembly
     edge = s.x[a.edges[:, 1]] - s.x[a.edges[:, 0]]
     assert np.abs(np.einsum("ij,ij->i", s.director, s.director) - 1).max() < 1e-14
@@ -208,7 +208,7 @@ def test_the_neighbour_list_does_not_show():
     ends_at = []
     for skin in (0.1, 0.8, 6.0):
         how = Stepping(skin=skin, tolerance=1e-4, solver_tolerance=1e-9)
-        motion, h = tangled_motion(1, how=how, drive=moved)
+        motion, _ = tangled_motion(1, how=how, drive=moved)
         motion.advance(20 * TAU)
         ends_at.append((motion.state.x.copy(), motion.counts["neighbour_lists"]))
     assert ends_at[0][1] > 2 * ends_at[2][1]
@@ -257,7 +257,7 @@ def test_a_mirror_image_moves_as_the_mirror_image():
 def test_two_ropes_pulled_apart_have_slipped():
     """Once nothing holds the pulled strand the run says SLIPPED and keeps the time."""
     h = 0.1
-    left, right = straight(21, 2.0), straight(21, 2.0) + [1.0, 1.9 * h, 0]
+    left, right = straight(21, 2.0), straight(21, 2.0, 0, (1.0, 1.9 * h, 0))
     a = assemble([left, right])
     bc = ends.clamp(ends.pull(ends.free(a), a, 1, 1, np.array([1.0, 0, 0])), a, 0, 0)
     motion = Motion(a, toy_model(h), bc, initial_state(a, [left, right]))

@@ -124,7 +124,7 @@ def test_a_free_tangle_stays_where_it_is():
 
 def test_two_strands_apart_cannot_be_pulled():
     """A pulled strand that nothing holds has no velocity: the rates say so instead of a number."""
-    strands = [straight(5, 1.0), straight(5, 1.0) + [0, 1.0, 0]]
+    strands = [straight(5, 1.0), straight(5, 1.0, 0, (0, 1, 0))]
     a = assemble(strands)
     state = initial_state(a, strands)
     bc = ends.pull(ends.clamp(ends.free(a), a, 0, 0), a, 1, 1, np.array([1.0, 0, 0]))

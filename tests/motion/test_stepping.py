@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import numpy as np
 import pytest
 
 from rod.helpers import toy_model
 from torsade.assembly import assemble, initial_state
+from torsade.errors import TorsadeError
 from torsade.motion import ends
 from torsade.motion.overdamped import Motion, Outcome, Stepping
 
@@ -135,3 +138,14 @@ def test_times_are_reached_exactly():
     steps = motion.steps
     assert motion.advance(np.pi * TAU) is Outcome.REACHED
     assert motion.steps == steps
+
+
+def test_time_does_not_go_back():
+    """A time already passed is refused or takes no step; it never rewinds the clock."""
+    motion = smooth_motion(Stepping())
+    motion.advance(TAU)
+    before = motion.state.copy()
+    with contextlib.suppress(TorsadeError):
+        motion.advance(0.5 * TAU)
+    assert motion.time == TAU
+    assert np.array_equal(motion.state.x, before.x)

@@ -68,10 +68,10 @@ def circle(n: int, radius: float) -> Floats:
     return outer * np.stack([np.cos(a), np.sin(a), 0 * a], axis=1)
 
 
-def straight(n: int, length: float, axis: int = 0) -> Floats:
-    """n evenly spaced nodes from the origin along an axis."""
-    x = np.zeros((n, 3))
-    x[:, axis] = np.linspace(0, length, n)
+def straight(n: int, length: float, axis: int = 0, at: tuple[float, float, float] = (0, 0, 0)) -> Floats:
+    """n evenly spaced nodes along an axis, the first one at the place given."""
+    x = np.tile(np.array(at, dtype=float), (n, 1))
+    x[:, axis] += np.linspace(0, length, n)
     return x
 
 

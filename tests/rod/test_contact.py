@@ -130,7 +130,7 @@ def test_contacts_are_those_of_brute_force(laws):
 @pytest.mark.parametrize("seed", range(3))
 def test_contact_forces_and_moments_sum_to_zero(laws, seed):
     """Action equals reaction along the line of midpoints, with both area laws."""
-    a, state, probe = in_contact(seed, LAWS[laws], EA=0.0, B=0.0, C=0.0)
+    _, state, probe = in_contact(seed, LAWS[laws], EA=0.0, B=0.0, C=0.0)
     force, _ = probe.forces(state.x, state.theta)
     moments = np.cross(state.x, force)
     assert np.abs(force.sum(axis=0)).max() < 1e-13 * np.abs(force).sum()
@@ -142,7 +142,7 @@ def test_contact_forces_and_moments_sum_to_zero(laws, seed):
 @pytest.mark.parametrize("closed", [False, True])
 @pytest.mark.parametrize("seed", range(3))
 def test_drag_matrix_is_the_law_written_out(laws, closed, seed):
-    """M from its columns = internal damping + collisions by brute force; symmetric, positive, null on (1..1)."""
+    """M, column by column, is internal damping + collisions by brute force: symmetric, >= 0."""
     a, state, probe = in_contact(seed, LAWS[laws], closed)
     m, n = probe.m, len(a.node_length)
     M = probe.drag_matrix(state.x, state.theta)
@@ -216,7 +216,7 @@ def test_drag_torques_are_the_law_written_out(laws):
 def test_a_strand_is_spun_the_way_a_rubbing_hand_would():
     """A strand along z touched at +x by one that moves along +y spins about +z (4.7, sign of r x dv)."""
     h = 0.1
-    strands = [straight(3, 0.2, 2), straight(3, 0.2, 2) + [1.8 * h, 0, 0]]
+    strands = [straight(3, 0.2, 2), straight(3, 0.2, 2, (1.8 * h, 0, 0))]
     a = assemble(strands)
     state = initial_state(a, strands)
     probe = Probe(a, toy_model(h), state)

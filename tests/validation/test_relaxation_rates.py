@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from rod.helpers import circle, straight, toy_model
 
+from rod.helpers import circle, straight, toy_model
 from torsade.assembly import assemble, initial_state
 from torsade.material import Material, Section
 from torsade.motion import ends
@@ -140,9 +140,9 @@ def test_bending_of_a_ring_in_its_plane(wave):
 def test_rates_follow_from_the_model_alone():
     """The model's coefficients are E A, E_b I, mu J, eta A, eta J of a circle (thesis 2.30)."""
     m, h = toy_model(0.1), 0.1
-    assert m.EA == pytest.approx(1e3 * np.pi * h**2)
-    assert m.B == pytest.approx(1e3 * np.pi * h**4 / 4)
-    assert m.C == pytest.approx(1e3 / 2.6 * np.pi * h**4 / 2)
+    assert pytest.approx(1e3 * np.pi * h**2) == m.EA
+    assert pytest.approx(1e3 * np.pi * h**4 / 4) == m.B
+    assert pytest.approx(1e3 / 2.6 * np.pi * h**4 / 2) == m.C
     assert m.eta_A / m.EA == pytest.approx(0.01)
     assert m.eta_J / m.C == pytest.approx(0.01 * 2.6)
     assert m.eta_f_A == pytest.approx(3.3 * m.eta_A)

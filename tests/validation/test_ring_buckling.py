@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from rod.helpers import circle, total_twist, twist_closed
 
+from rod.helpers import circle, total_twist, twist_closed
 from torsade.assembly import assemble, initial_state
 from torsade.material import Material, Section
 from torsade.motion import ends
