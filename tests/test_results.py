@@ -48,6 +48,14 @@ def test_what_is_saved_is_opened(tmp_path: Path, result: ts.Result) -> None:
     assert repr(again) == "<Result of prison-escape on reef: 5 frames to t = 1 s>"
 
 
+def test_the_last_frame_that_held(result: ts.Result) -> None:
+    assert result.last_held == FRAMES - 1
+    result.dataset.attrs["slipped_at_s"] = 0.75  # the frame at index 3
+    assert result.last_held == 2
+    result.dataset.attrs["slipped_at_s"] = 0.8  # between frames
+    assert result.last_held == 3
+
+
 def test_plain_xarray_reads_it(tmp_path: Path, result: ts.Result) -> None:
     path = result.save(tmp_path / "reef.zarr")
     with xarray.open_zarr(path, chunks=None) as plain:

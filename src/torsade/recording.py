@@ -126,7 +126,7 @@ class Recording:
             return recording
         recording._out = store.check_target(out, overwrite)
         part = store.part_of(recording._out)
-        if resume and part.exists():
+        if resume and store.has_restart(part):
             recording._go_on(part)
         else:
             recording.attrs["done"] = 0
@@ -187,8 +187,11 @@ class Recording:
         self._flushed = time.monotonic()
 
     def stop(self, status: str) -> None:
-        """Save what there is of a run that did not come to its end, and say why."""
+        """Save what there is of a run that did not come to its end, and why it did not."""
         self.attrs["status"] = status
+        if self.part is not None and self.done == 0:
+            store.discard(self.part)
+            self.part = None
         self.flush()
 
     def finish(self, numbers: Mapping[str, float]) -> Result:

@@ -89,6 +89,14 @@ class Result:
         """When a pulled bend slipped [s]; None while it holds."""
         return self._number("slipped_at_s")
 
+    @property
+    def last_held(self) -> int:
+        """The last frame, or of a bend that slipped the last one before it did."""
+        slipped = self.slipped_at
+        if slipped is None:
+            return self.frames - 1
+        return max(0, int(self._dataset["time"].searchsorted(slipped * (1 - 1e-9))) - 1)
+
     def save(self, path: str | Path, overwrite: bool = False) -> Path:
         """Write the result to a folder NAME.zarr.
 

@@ -32,6 +32,8 @@ __all__ = [
     "check_target",
     "complete",
     "create",
+    "discard",
+    "has_restart",
     "part_of",
     "read_restart",
     "set_attributes",
@@ -134,6 +136,16 @@ def write_restart(part: Path, arrays: Arrays) -> None:
         with new.open("wb") as file:
             np.savez(file, **arrays)  # type: ignore[arg-type]
         new.replace(part / RESTART)
+
+
+def has_restart(part: Path) -> bool:
+    """Whether a growing result can be gone on with."""
+    return (part / RESTART).is_file()
+
+
+def discard(part: Path) -> None:
+    """Remove a growing result that holds no frame."""
+    shutil.rmtree(part, ignore_errors=True)
 
 
 def read_restart(part: Path) -> dict[str, NDArray[Any]]:

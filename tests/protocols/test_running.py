@@ -82,6 +82,15 @@ def test_ctrl_c_keeps_the_frames_and_resuming_changes_no_bit(tmp_path: Path, sho
     assert not (tmp_path / "reef.zarr.part").exists()
 
 
+def test_ctrl_c_before_the_first_frame_leaves_nothing(tmp_path: Path) -> None:
+    def stop(share: float, note: str) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted, match="interrupted before the first frame; nothing is saved"):
+        SHORT.run(stop, tmp_path / "reef.zarr")
+    assert list(tmp_path.iterdir()) == []
+
+
 KILLED = """
 import os, signal, sys
 import torsade as ts

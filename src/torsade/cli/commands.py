@@ -148,12 +148,11 @@ def _run(spec: Spec, out: str | None, resume: bool, overwrite: bool, quiet: bool
         with _progress(quiet) as progress:
             return spec.run(progress, out, resume=resume, overwrite=overwrite)
     except KeyboardInterrupt as error:
-        part = getattr(error, "part", None)
-        if part is not None:
+        if getattr(error, "part", None) is not None:
             raise KeyboardInterrupt(
                 f"{error}, and the same command with --resume goes on from there"
             ) from None
-        if getattr(error, "frames", None) is not None:
+        if out is None and str(error):
             raise KeyboardInterrupt(f"{error}; give --out NAME.zarr to keep what is done") from None
         raise
 
@@ -181,7 +180,7 @@ def _notice(share: float, note: str) -> None:
 def _draw(result: Result, path: str) -> str:
     from torsade.view.scene import render_result
 
-    render_result(result.dataset, path)
+    render_result(result.dataset, path, frame=result.last_held)
     return path
 
 

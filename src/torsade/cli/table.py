@@ -21,7 +21,7 @@ def print_table(result: Result, report: dict[str, Any], files: list[str]) -> Non
     table = Table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True)
     table.add_column(overflow="fold")
-    for name, value in (*_asked(result), *_found(report), *_spent(report)):
+    for name, value in (*_asked(result), *_found(report, result.last_held), *_spent(report)):
         table.add_row(name, Text(value))
     for k, file in enumerate(files):
         table.add_row("" if k else "files", Text(file))
@@ -36,21 +36,22 @@ def _asked(result: Result) -> Iterator[tuple[str, str]]:
     yield "force", f"{spec['force']:g} N for {spec['duration']:g} s"
 
 
-def _found(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
+def _found(report: dict[str, Any], held: int) -> Iterator[tuple[str, str]]:
     if "separation_m" in report:
-        yield from _escape(report)
+        yield from _escape(report, held)
     else:
         yield from _tightened(report)
 
 
-def _escape(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
+def _escape(report: dict[str, Any], held: int) -> Iterator[tuple[str, str]]:
+    """Compression and twist are those of the last frame that held."""
     c_f, speed, slipped = (report[k] for k in ("c_f", "pull_speed_m_per_s", "slipped_at_s"))
     yield "topological friction c_f", "not known: the ends did not part" if c_f is None else f"{c_f:.1f}"
     yield "mean pull speed", "not known" if speed is None else f"{1e3 * speed:.2f} mm/s"
     yield "slipped", "no, it holds" if slipped is None else f"at {slipped:.3f} s"
     yield "separation", _span(report["separation_m"], 1e3, "mm")
-    yield "compression", f"{report['compression_N'][-1]:.0f} N"
-    yield "twist", ", ".join(f"{'AB'[k]} {t[-1]:+.2f} rad" for k, t in enumerate(report["twist_rad"]))
+    yield "compression", f"{report['compression_N'][held]:.0f} N"
+    yield "twist", ", ".join(f"{'AB'[k]} {t[held]:+.2f} rad" for k, t in enumerate(report["twist_rad"]))
 
 
 def _tightened(report: dict[str, Any]) -> Iterator[tuple[str, str]]:

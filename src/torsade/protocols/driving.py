@@ -60,8 +60,9 @@ class Interrupted(KeyboardInterrupt):
 
     def __init__(self, time: float, frames: int, part: Path | None) -> None:
         self.time, self.frames, self.part = time, frames, part
+        reached = f"at t = {time:.4g} s" if frames else "before the first frame"
         kept = "nothing is saved" if part is None else f"{frames} frames are saved in {str(part)!r}"
-        super().__init__(f"interrupted at t = {time:.4g} s; {kept}")
+        super().__init__(f"interrupted {reached}; {kept}")
 
 
 def read_centerline(path: str, spec: Spec, strands: int, wanted: str) -> Centerline:

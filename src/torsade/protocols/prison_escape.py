@@ -11,7 +11,7 @@ from pydantic import Field, field_validator, model_validator
 
 from torsade.errors import TorsadeError
 from torsade.protocols.base import Experiment, Positive, Spec
-from torsade.units import Force
+from torsade.units import Force, Length
 
 if TYPE_CHECKING:
     from torsade.assembly import Assembly, Floats, State
@@ -51,6 +51,12 @@ class PrisonEscape(Spec):
         description='Clamped end, then pulled end, such as "A1B1"; by default the knot\'s own, or "A0B0" '
         "for a centerline.",
     )
+    lead: Annotated[Length, Positive] | None = Field(
+        None,
+        description="Length of fiber from a built-in knot to its clamped and to its pulled end; free ends "
+        "are twice as long.",
+        examples=["5 mm"],
+    )
     force: Annotated[Force, Positive] = Field(15.0, description="Force on the pulled end.")
     direction: Direction = Field(
         "x", description="Direction of the pull: x, -x, y, -y, z, -z, or line (away from the clamped end)."
@@ -80,6 +86,8 @@ class PrisonEscape(Spec):
                 'nothing to pull is given; give a knot such as "reef", or a centerline, a CSV file of two '
                 "strands"
             )
+        if self.knot is None and self.lead is not None:
+            raise TorsadeError("a centerline has the leads that it has; leave lead out, or give a knot")
         return self
 
     @property
@@ -98,10 +106,8 @@ class PrisonEscape(Spec):
             from torsade.knots.stacked import bend
 
             # The bend does not care which of its two ends is the clamped one.
-            pulled = (
-                self.pulled if self.pulled is None else "".join(sorted((self.pulled[:2], self.pulled[2:])))
-            )
-            built = bend(self.knot, self.h, spacing=self.node_spacing, pulled=pulled)
+            pulled = None if self.pulled is None else "".join(sorted((self.pulled[:2], self.pulled[2:])))
+            built = bend(self.knot, self.h, self.lead, self.node_spacing, pulled)
             shape = Centerline(built.strands)
             check(shape, self.h)
             return shape
