@@ -102,6 +102,23 @@ def test_dissipation_and_work_of_a_fiber_pulled_straight():
         assert motion.dissipation == pytest.approx(F * moved - 0.5 * m.EA * moved**2, rel=2e-3)
 
 
+def test_work_and_twist_of_a_turned_fiber():
+    """Closed form: spun at rate S by one end, twist S t spread evenly; W = C (S t)^2/2L + eta J S^2 t/L."""
+    n, S, t = 21, 30.0, 5 * TAU
+    x = straight(n, 1.0)
+    a = assemble([x])
+    m = toy_model()
+    bc = ends.turn(ends.clamp(ends.free(a), a, 0, 0), a, 0, 1, S)
+    motion = Motion(a, m, bc, initial_state(a, [x]), Stepping(tolerance=1e-5))
+    motion.advance(t)
+    twist, L = S * t, 1.0 - 1.0 / (n - 1)  # between the middles of the first and the last edge
+    assert total_twist(a, motion.state) == pytest.approx(twist, rel=1e-12)
+    assert np.allclose(np.diff(motion.state.theta), twist / (n - 2), rtol=1e-9)
+    assert motion.energies().twist == pytest.approx(0.5 * m.C * twist**2 / L, rel=1e-9)
+    assert motion.dissipation == pytest.approx(m.eta_J * S**2 * t / L, rel=1e-9)
+    assert motion.external_work == pytest.approx(motion.dissipation + motion.energies().twist, rel=1e-9)
+
+
 # --- link
 
 

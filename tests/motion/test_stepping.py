@@ -140,6 +140,14 @@ def test_times_are_reached_exactly():
     assert motion.steps == steps
 
 
+def test_fixed_steps_are_counted():
+    """Frames that are multiples of the fixed step cost exactly as many steps as they hold."""
+    motion = smooth_motion(Stepping(fixed_step=1e-4))
+    for k in range(1, 21):
+        motion.advance(k * 1e-3)
+    assert motion.steps == 200
+
+
 def test_time_does_not_go_back():
     """A time already passed is refused or takes no step; it never rewinds the clock."""
     motion = smooth_motion(Stepping())
