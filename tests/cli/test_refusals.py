@@ -55,7 +55,6 @@ BEND = ("run", "prison-escape")
         ),
         ((*BEND, "--knot", "reef", "--out", "reef"), "give a name that ends in .zarr"),
         ((*BEND, "--knot", "reef", "--out", "no/such/reef.zarr"), "there is no folder"),
-        ((*BEND, "--knot", "reef", "--plot", "no/such/reef.png"), "cannot write 'no/such/reef.png'"),
         ((*BEND, "--knot", "reef", "--resume"), "(--out NAME.zarr)"),
         ((*BEND, "--centerline", "none.csv"), "there is no file 'none.csv'"),
         ((*BEND, "--spec", "none.toml"), "there is no file 'none.toml'"),
@@ -71,6 +70,21 @@ BEND = ("run", "prison-escape")
 )
 def test_options(tmp_path: Path, arguments: Sequence[str], says: str) -> None:
     assert says in refusal(*arguments, cwd=tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("option", "file", "says"),
+    [
+        ("--plot", "no/such/reef.png", "cannot write 'no/such/reef.png'"),
+        ("--plot", "reef.jpg", "ends in .png or .pdf or .svg"),
+        ("--picture", "reef.pdf", "ends in .png"),
+        ("--picture", ".", "ends in .png"),
+    ],
+)
+def test_pictures_are_refused_before_the_run(tmp_path: Path, option: str, file: str, says: str) -> None:
+    pytest.importorskip("pyvista" if option == "--picture" else "matplotlib")
+    assert says in refusal(*BEND, "--knot", "reef", option, file, cwd=tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
