@@ -19,7 +19,11 @@ from torsade.motion.overdamped import Motion, Stepping
 @settings(deadline=None, max_examples=300)
 @given(st.integers(0, 10**6), st.sampled_from([1.0, 1e-3, 1e-6, 1e-9]), st.booleans())
 def test_distance_is_the_one_of_segments(seed, off, lattice):
-    """The kernel agrees with `torsade.segments`, near-parallel and degenerate positions included."""
+    """The kernel agrees with `torsade.segments`, near-parallel and degenerate positions included.
+
+    Segments within 1e-6 of parallel count as parallel there, which may overrate their distance by as much of
+    their length.
+    """
     rng = np.random.default_rng(seed)
     p = rng.normal(size=(4, 3))
     if lattice:
@@ -29,7 +33,7 @@ def test_distance_is_the_one_of_segments(seed, off, lattice):
     else:
         p[3] = p[2] + (p[1] - p[0]) * rng.uniform(-2, 2) + off * rng.normal(size=3)
     expected = segments.segment_distance(*p)
-    assert segment_distance(*p) == pytest.approx(expected, rel=1e-6, abs=2e-6)
+    assert segment_distance(*p) == pytest.approx(expected, rel=1e-9, abs=1e-5 if off < 1e-3 else 1e-12)
 
 
 def moving_pair(seed, speed):
