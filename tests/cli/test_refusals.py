@@ -46,6 +46,8 @@ BEND = ("run", "prison-escape")
         ((*BEND, "--knot", "reef", "--force", "nan"), "not a finite number"),
         ((*BEND, "--knot", "reef", "--force", "15", "N"), "quote values with units"),
         ((*BEND, "--knot", "reef", "--preset", "publishd"), "did you mean 'published'?"),
+        ((*BEND, "reef"), "did you mean --knot reef?"),
+        ((*BEND, "--knot", "reef", "--rho", "1"), "has no inertia"),
         ((*BEND, "--knot", "reff"), "the nearest name is 'reef'"),
         ((*BEND, "--knot", "reef", "--materail", "nylon"), "did you mean --material?"),
         ((*BEND, "--knot", "reef", "--force"), "--force has no value"),

@@ -28,6 +28,9 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
     if kind == "UnknownCommandError" or (kind == "UnusedCliTokensError" and arguments[:1] != ["run"]):
         return _unknown_command(unused[0] if unused else arguments[0], arguments)
     if kind == "UnusedCliTokensError":
+        if unused[0] in arguments[2:3]:
+            option = "--centerline" if unused[0].endswith(".csv") else "--knot"
+            return f"{unused[0]!r} comes without its option; did you mean {option} {unused[0]}?"
         return (
             f"{unused[0]!r} belongs to no option; give every value after its option, and quote values with "
             'units, such as --force "15 N"'

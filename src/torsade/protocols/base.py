@@ -72,7 +72,13 @@ class Spec(BaseModel, ABC):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    hints: ClassVar[Mapping[str, str]] = {}
+    hints: ClassVar[Mapping[str, str]] = {
+        "rho": "overdamped motion has no inertia, so there is no field 'rho'; leave it out",
+        "seed": "nothing here is random, so there is no field 'seed'; leave it out",
+        "time": "there is no field 'time'; did you mean 'duration'?",
+        "file": "there is no field 'file'; did you mean 'centerline'?",
+        "dt": "there is no field 'dt'; did you mean 'fixed_step'?",
+    }
     """What to say to those who give a field that this protocol does not have."""
 
     protocol: str

@@ -34,11 +34,9 @@ class PrisonEscape(Spec):
     """
 
     hints: ClassVar[Mapping[str, str]] = {
-        "bend": "prison-escape has no field 'bend'; did you mean 'knot'?",
-        "name": "prison-escape has no field 'name'; did you mean 'knot'?",
-        "file": "prison-escape has no field 'file'; did you mean 'centerline'?",
-        "time": "prison-escape has no field 'time'; did you mean 'duration'?",
-        "dt": "prison-escape has no field 'dt'; did you mean 'fixed_step'?",
+        **Spec.hints,
+        "bend": "there is no field 'bend'; did you mean 'knot'?",
+        "name": "there is no field 'name'; did you mean 'knot'?",
     }
 
     protocol: Literal["prison-escape"] = "prison-escape"

@@ -26,13 +26,11 @@ class Tighten(Spec):
     """
 
     hints: ClassVar[Mapping[str, str]] = {
+        **Spec.hints,
         "knot": "tighten has no built-in knots yet; give a centerline, a CSV file of one strand",
         "bend": "tighten pulls a knot in one strand; give a centerline, or run prison-escape for a bend",
         "pulled": "tighten pulls both ends, so there is no field 'pulled'; leave it out",
         "direction": "tighten pulls along -x and +x, so there is no field 'direction'; leave it out",
-        "time": "tighten has no field 'time'; did you mean 'duration'?",
-        "file": "tighten has no field 'file'; did you mean 'centerline'?",
-        "dt": "tighten has no field 'dt'; did you mean 'fixed_step'?",
     }
 
     protocol: Literal["tighten"] = "tighten"
