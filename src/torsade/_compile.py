@@ -13,9 +13,10 @@ import inspect
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
 import numba
-from numba.core import config
+from numba.core import config, event
 
 PACKAGE = Path(__file__).parent
 KERNEL_SOURCES = ("_compile.py", "assembly.py", "rod", "motion")
@@ -46,10 +47,30 @@ def cache_directory() -> Path | None:
 CACHE = cache_directory()
 
 
-def compile_kernels(module_name: str) -> None:
-    """Compile every function that the module defines, in place.
+class _QuickOptimisation(event.Listener):
+    """Compile kernels at LLVM level 1: a third less time to compile, and the same speed afterwards."""
 
-    With ``NUMBA_DISABLE_JIT=1`` the functions stay plain Python and can be stepped through.
+    def __init__(self) -> None:
+        self._saved: list[Any] = []
+
+    def on_start(self, event: event.Event) -> None:
+        self._saved.append(config.OPT)
+        if event.data["dispatcher"].py_func.__module__.startswith("torsade."):
+            config.OPT = type(config.OPT)(1)
+
+    def on_end(self, event: event.Event) -> None:
+        config.OPT = self._saved.pop()
+
+
+event.register("numba:compile", _QuickOptimisation())
+
+
+def compile_kernels(module_name: str, inline: tuple[str, ...] = ()) -> None:
+    """Compile every function that the module defines, in place; those named are always inlined.
+
+    Private functions can be called from compiled code only: their wrappers would take long to compile.
+    Passing arrays to a small function that is not inlined costs more than what it does. With
+    ``NUMBA_DISABLE_JIT=1`` the functions stay plain Python and can be stepped through.
     """
     module = sys.modules[module_name]
     previous = config.CACHE_DIR
@@ -57,7 +78,14 @@ def compile_kernels(module_name: str) -> None:
     try:
         for name, function in list(vars(module).items()):
             if inspect.isfunction(function) and function.__module__ == module_name:
-                options = {"cache": CACHE is not None, "error_model": "numpy", "nogil": True}
-                setattr(module, name, numba.njit(**options)(function))
+                compiled = numba.njit(
+                    cache=CACHE is not None,
+                    error_model="numpy",
+                    nogil=True,
+                    forceinline=name in inline,
+                    no_cfunc_wrapper=True,
+                    no_cpython_wrapper=name.startswith("_"),
+                )
+                setattr(module, name, compiled(function))
     finally:
         config.CACHE_DIR = previous

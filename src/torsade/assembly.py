@@ -86,7 +86,7 @@ def assemble(
     Raises
     ------
     TorsadeError
-        When a strand has too few nodes (2 if open, 3 if closed) or an edge of zero length.
+        When a strand has too few nodes (2 if open, 3 if closed), an edge of zero length or a fold.
     """
     flags = [False] * len(strands) if closed is None else list(closed)
     parts = [_fiber(x, c, f) for f, (x, c) in enumerate(zip(strands, flags, strict=True))]
@@ -134,6 +134,13 @@ def _fiber(x: Floats, closed: bool, fiber: int) -> tuple[Ints, Ints, Floats]:
         raise TorsadeError(
             f"nodes {edges[e, 0]} and {edges[e, 1]} of fiber {fiber} are at one place; "
             "every edge needs a length: remove one of the two nodes."
+        )
+    t = (x[edges[:, 1]] - x[edges[:, 0]]) / lengths[:, None]
+    turn = np.einsum("kc,kc->k", t[hinges[:, 0]], t[hinges[:, 1]])
+    if turn.size and turn.min() < -1 + 1e-9:
+        node = int(hinges[np.argmin(turn), 2])
+        raise TorsadeError(
+            f"fiber {fiber} folds straight back at node {node}; fibers bend smoothly: move the node."
         )
     return edges, hinges, lengths
 

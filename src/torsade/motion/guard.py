@@ -68,7 +68,7 @@ def passes_through(x0, x1, i0, i1, j0, j1, move):
 
     Conservative: the distance shrinks by at most move [m] over the whole step, so an interval of the
     step is safe when the distance at its middle exceeds half its share. Intervals are halved up to
-    2^-10 of the step; what is not safe by then counts as a crossing.
+    2^-10 of the step; what is not safe by then, or nearer than 1e-9 of the edges, counts as a crossing.
     """
     points = np.empty((4, 3))
     k = 0
@@ -78,7 +78,11 @@ def passes_through(x0, x1, i0, i1, j0, j1, move):
         for n, node in enumerate((i0, i1, j0, j1)):
             for c in range(3):
                 points[n, c] = (1.0 - middle) * x0[node, c] + middle * x1[node, c]
-        if segment_distance(points[0], points[1], points[2], points[3]) > 0.5 * move * 0.5**depth:
+        size = 0.0
+        for c in range(3):
+            size += abs(points[1, c] - points[0, c]) + abs(points[3, c] - points[2, c])
+        distance = segment_distance(points[0], points[1], points[2], points[3])
+        if distance > 0.5 * move * 0.5**depth + 1e-9 * size:
             k += 1
             while k % 2 == 0 and depth > 0:
                 k //= 2
@@ -98,13 +102,14 @@ def first_crossing(a, pairs, x0, x1, length, mid):
     Edge lengths (n_edges,) and midpoints (n_edges, 3) at x0 bound the distance from below; only where
     that bound is not enough is the motion followed.
     """
+    edges = a.edges
     for k in range(pairs.shape[0]):
         e = pairs[k, 0]
         f = pairs[k, 1]
-        i0 = a.edges[e, 0]
-        i1 = a.edges[e, 1]
-        j0 = a.edges[f, 0]
-        j1 = a.edges[f, 1]
+        i0 = edges[e, 0]
+        i1 = edges[e, 1]
+        j0 = edges[f, 0]
+        j1 = edges[f, 1]
         move = max(
             max(_relative_move(x0, x1, i0, j0), _relative_move(x0, x1, i0, j1)),
             max(_relative_move(x0, x1, i1, j0), _relative_move(x0, x1, i1, j1)),
@@ -119,4 +124,4 @@ def first_crossing(a, pairs, x0, x1, length, mid):
     return -1
 
 
-compile_kernels(__name__)
+compile_kernels(__name__, inline=("_clamped", "segment_distance", "_relative_move"))

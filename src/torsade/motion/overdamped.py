@@ -12,7 +12,7 @@ import numpy as np
 from torsade.assembly import Assembly, Floats, Ints, State
 from torsade.errors import TorsadeError
 from torsade.material import Material, Section
-from torsade.motion import stepping
+from torsade.motion import scheme, stepping
 from torsade.motion.ends import Boundary
 from torsade.motion.rates import Work, energies, forces
 from torsade.rod.contact import Contacts, Model, compression, contacts_among
@@ -65,6 +65,10 @@ def model(material: Material, section: Section, laws: Laws = STANDARD) -> Model:
         raise TorsadeError(
             f"material {material.name!r} has viscosity eta = {material.eta:g} Pa s; overdamped motion needs "
             'eta > 0: give one, for example eta = "1e5 Pa s".'
+        )
+    if not laws.eta_f_ratio > 0:
+        raise TorsadeError(
+            f"eta_f / eta is {laws.eta_f_ratio:g}; strands in contact need drag: give a ratio above 0."
         )
     eta_f = laws.eta_f_ratio * material.eta
     return Model(
@@ -158,7 +162,7 @@ class Motion:
         self.model = model
         self.boundary = boundary
         self.state = state.copy()
-        self.control = stepping.Control(
+        self.control = scheme.Control(
             how.fixed_step,
             how.tolerance * radius,
             radius,
@@ -166,8 +170,8 @@ class Motion:
             how.skin * radius,
             how.move * radius,
         )
-        self._clock = stepping.Clock(np.zeros(4), np.zeros(5, np.int64), np.zeros(2, np.int64))
-        self._scratch = stepping.stage_work(assembly)
+        self._clock = stepping.Clock(np.zeros(5), np.zeros(5, np.int64), np.zeros(2, np.int64))
+        self._scratch = scheme.stage_work(assembly)
 
     @property
     def time(self) -> float:

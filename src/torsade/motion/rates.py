@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from torsade._compile import compile_kernels
 from torsade.rod.contact import (
+    Contacts,
     add_contact_forces,
     add_drag_torques,
     contact_energy,
+    contacts_among,
     find_contacts,
     find_drag,
 )
@@ -32,11 +34,37 @@ from torsade.rod.elasticity import (
     twist_energy,
 )
 from torsade.rod.kinematics import edge_geometry, reference_twist_change
-from torsade.rod.neighbours import edge_midpoints
+from torsade.rod.neighbours import edge_midpoints, neighbour_pairs, without_excluded
+from torsade.rod.skyline import Skyline, skyline_for
 
 OK = 0
 LOOSE = 1
 UNSOLVED = 2
+
+WORTH = 600.0
+"""Mean squared reach of matrix rows up to which a direct solve is faster than an iterative one."""
+
+
+class Near(NamedTuple):
+    """What is near what: pairs of edges to guard (n_pairs, 2), contacts, room for the mobility matrix."""
+
+    guarded: NDArray[np.int64]
+    contacts: Contacts
+    skyline: Skyline
+
+
+def list_near(a, m, mid, length, skin):
+    """A new Verlet list of edges with these midpoints (n_edges, 3) and lengths (n_edges,) [m].
+
+    Guarded are all pairs that do not share a node, contacts may come from those not excluded.
+    """
+    reach = m.diameter
+    for e in range(length.shape[0]):
+        reach = max(reach, length[e])
+    guarded = neighbour_pairs(a, mid, reach + skin, 1, 0.0)
+    cutoff = m.diameter + skin
+    pairs = without_excluded(a, guarded, mid, cutoff, m.exclusion_edges, m.exclusion_length)
+    return Near(guarded, contacts_among(pairs), skyline_for(a, pairs, WORTH))
 
 
 class Work(NamedTuple):
@@ -53,7 +81,6 @@ class Work(NamedTuple):
     force: NDArray[np.float64]
     held: NDArray[np.bool_]
     component: NDArray[np.int64]
-    iterations: NDArray[np.int64]
     mobility: MobilityWork
     spin: SpinWork
 
@@ -75,7 +102,6 @@ def rate_work(a):
         np.empty((n, 3)),
         np.empty(n, np.bool_),
         np.empty(a.closed.shape[0], np.int64),
-        np.zeros(2, np.int64),
         mobility_work(n, n_edges),
         spin_work(n_edges),
     )
@@ -87,34 +113,39 @@ def forces(a, m, bc, x, theta, base_tangent, base_twist, contacts, w):
     base_tangent (n_edges, 3) and base_twist (n_hinges,) are the tangents and reference twists of the
     last completed step, from which the frames are transported.
     """
-    edge_geometry(x, a.edges, w.length, w.tangent)
-    reference_twist_change(base_tangent, w.tangent, a.hinges, w.change)
-    for k in range(w.change.shape[0]):
-        w.change[k] += base_twist[k]
-    hinge_twist(theta, w.change, a.hinges, w.m)
-    w.force[:] = bc.force
-    w.torque[:] = bc.torque
-    add_elastic_forces(a, m.EA, m.B, m.C, m.bend_present, w.length, w.tangent, w.m, w.force, w.torque)
+    length, tangent, twist, force, torque = w.length, w.tangent, w.change, w.force, w.torque
+    external, moment = bc.force, bc.torque
+    edge_geometry(x, a.edges, length, tangent)
+    reference_twist_change(base_tangent, tangent, a.hinges, twist)
+    for k in range(twist.shape[0]):
+        twist[k] += base_twist[k]
+    hinge_twist(theta, twist, a.hinges, w.m)
+    for i in range(force.shape[0]):
+        for c in range(3):
+            force[i, c] = external[i, c]
+    for e in range(torque.shape[0]):
+        torque[e] = moment[e]
+    add_elastic_forces(a, m.EA, m.B, m.C, m.bend_present, length, tangent, w.m, force, torque)
     edge_midpoints(x, a.edges, w.mid)
     find_contacts(m, w.mid, contacts)
-    add_contact_forces(a, m, w.length, w.tangent, contacts, w.force)
+    add_contact_forces(a, m, length, tangent, contacts, force)
 
 
-def _label_components(a, bc, contacts, component):
+def _label_components(edge_fiber, contacts, component):
     """Label fibers that contacts join into bodies: component[f] is the smallest fiber of f's body."""
-    for f in range(component.shape[0]):
+    n = component.shape[0]
+    for f in range(n):
         component[f] = f
-    if component.shape[0] == 1:
+    if n == 1:
         return
+    edges = contacts.edges
     for k in range(contacts.count[0]):
-        p = component[a.edge_fiber[contacts.edges[k, 0]]]
-        q = component[a.edge_fiber[contacts.edges[k, 1]]]
+        p = component[edge_fiber[edges[k, 0]]]
+        q = component[edge_fiber[edges[k, 1]]]
         if p != q:
-            low = min(p, q)
-            high = max(p, q)
-            for f in range(component.shape[0]):
-                if component[f] == high:
-                    component[f] = low
+            for f in range(n):
+                if component[f] == max(p, q):
+                    component[f] = min(p, q)
 
 
 def hold_bodies(a, bc, contacts, held, component):
@@ -123,8 +154,10 @@ def hold_bodies(a, bc, contacts, held, component):
     Returns OK, or LOOSE when such a body carries a net external force: nothing resists it, so its
     velocity is unbounded (two ropes that have slipped apart).
     """
-    held[:] = bc.held
-    _label_components(a, bc, contacts, component)
+    node_start, fixed, force = a.node_start, bc.held, bc.force
+    for i in range(held.shape[0]):
+        held[i] = fixed[i]
+    _label_components(a.edge_fiber, contacts, component)
     for b in range(component.shape[0]):
         if component[b] != b:
             continue
@@ -135,99 +168,104 @@ def hold_bodies(a, bc, contacts, held, component):
         size = 0.0
         for f in range(b, component.shape[0]):
             if component[f] == b:
-                for i in range(a.node_start[f], a.node_start[f + 1]):
-                    anchored = anchored or bc.held[i]
-                    fx += bc.force[i, 0]
-                    fy += bc.force[i, 1]
-                    fz += bc.force[i, 2]
-                    size += abs(bc.force[i, 0]) + abs(bc.force[i, 1]) + abs(bc.force[i, 2])
+                for i in range(node_start[f], node_start[f + 1]):
+                    anchored = anchored or fixed[i]
+                    fx += force[i, 0]
+                    fy += force[i, 1]
+                    fz += force[i, 2]
+                    size += abs(force[i, 0]) + abs(force[i, 1]) + abs(force[i, 2])
         if not anchored:
             if abs(fx) + abs(fy) + abs(fz) > 1e-9 * size:
                 return LOOSE
-            held[a.node_start[b]] = True
+            held[node_start[b]] = True
     return OK
 
 
 def _ground_guess(a, bc, v, held, component):
     """Make the starting guess agree with held nodes; bodies that float move with their grounded node."""
+    node_start, fixed, velocity = a.node_start, bc.held, bc.velocity
     for f in range(component.shape[0]):
-        g = a.node_start[component[f]]
-        floating = held[g] and not bc.held[g]
-        vx = v[g, 0]
-        vy = v[g, 1]
-        vz = v[g, 2]
-        for i in range(a.node_start[f], a.node_start[f + 1]):
-            if floating:
+        g = node_start[component[f]]
+        floating = held[g] and not fixed[g]
+        vx = v[g, 0] if floating else 0.0
+        vy = v[g, 1] if floating else 0.0
+        vz = v[g, 2] if floating else 0.0
+        for i in range(node_start[f], node_start[f + 1]):
+            if fixed[i]:
+                for c in range(3):
+                    v[i, c] = velocity[i, c]
+            elif floating:
                 v[i, 0] -= vx
                 v[i, 1] -= vy
                 v[i, 2] -= vz
-            if bc.held[i]:
-                v[i] = bc.velocity[i]
 
 
 def _centre_floating(a, bc, v, held, component):
     """Give every floating body zero mean velocity over its length (its centre stays)."""
+    node_start, node_length, fixed = a.node_start, a.node_length, bc.held
     for b in range(component.shape[0]):
-        g = a.node_start[b]
-        if component[b] == b and held[g] and not bc.held[g]:
+        g = node_start[b]
+        if component[b] == b and held[g] and not fixed[g]:
             sx = 0.0
             sy = 0.0
             sz = 0.0
             total = 0.0
             for f in range(b, component.shape[0]):
                 if component[f] == b:
-                    for i in range(a.node_start[f], a.node_start[f + 1]):
-                        weight = a.node_length[i]
-                        total += weight
-                        sx += weight * v[i, 0]
-                        sy += weight * v[i, 1]
-                        sz += weight * v[i, 2]
+                    for i in range(node_start[f], node_start[f + 1]):
+                        total += node_length[i]
+                        sx += node_length[i] * v[i, 0]
+                        sy += node_length[i] * v[i, 1]
+                        sz += node_length[i] * v[i, 2]
             for f in range(b, component.shape[0]):
                 if component[f] == b:
-                    for i in range(a.node_start[f], a.node_start[f + 1]):
+                    for i in range(node_start[f], node_start[f + 1]):
                         v[i, 0] -= sx / total
                         v[i, 1] -= sy / total
                         v[i, 2] -= sz / total
 
 
-def rates(a, m, bc, x, theta, base_tangent, base_twist, contacts, tolerance, v, omega, angular, w):
+def rates(a, m, bc, x, theta, base_tangent, base_twist, near, tolerance, v, omega, angular, w):
     """Velocities v (n_nodes, 3), spins omega and rates of the material angles angular (n_edges,).
 
     v holds the starting guess. The material angle is measured from a director transported straight
     from the base tangent t0, which itself turns about t by -(t0 x t) . dt/dt / (1 + t0 . t).
     Returns OK, LOOSE (see hold_bodies) or UNSOLVED.
     """
+    contacts = near.contacts
     forces(a, m, bc, x, theta, base_tangent, base_twist, contacts, w)
     find_drag(a, m, x, w.length, w.mid, contacts)
     if hold_bodies(a, bc, contacts, w.held, w.component) != OK:
         return LOOSE
     _ground_guess(a, bc, v, w.held, w.component)
-    iterations = solve_mobility(a, m.eta_A, contacts, w.force, w.held, tolerance, v, w.mobility)
-    if iterations < 0:
+    if not solve_mobility(a, m.eta_A, contacts, near.skyline, w.force, w.held, tolerance, v, w.mobility):
         return UNSOLVED
-    w.iterations[0] += 1
-    w.iterations[1] += iterations
     _centre_floating(a, bc, v, w.held, w.component)
-    w.drag_torque[:] = 0.0
-    w.spin_weight[:] = 0.0
+    torque, drag_torque, spin_weight = w.torque, w.drag_torque, w.spin_weight
+    for e in range(omega.shape[0]):
+        drag_torque[e] = 0.0
+        spin_weight[e] = 0.0
     if m.eta_f_J > 0.0:
-        add_drag_torques(a, m, v, w.tangent, contacts, w.drag_torque, w.spin_weight)
+        add_drag_torques(a, m, v, w.tangent, contacts, drag_torque, spin_weight)
     for e in range(omega.shape[0]):
-        angular[e] = w.torque[e] + w.drag_torque[e]
-    solve_spin(a, m.eta_J, w.tangent, angular, w.spin_weight, bc.turned, bc.spin, omega, w.spin)
-    for e in range(omega.shape[0]):
-        t0 = base_tangent[e]
-        t = w.tangent[e]
-        i = a.edges[e, 0]
-        j = a.edges[e, 1]
-        triple = (
-            (t0[1] * t[2] - t0[2] * t[1]) * (v[j, 0] - v[i, 0])
-            + (t0[2] * t[0] - t0[0] * t[2]) * (v[j, 1] - v[i, 1])
-            + (t0[0] * t[1] - t0[1] * t[0]) * (v[j, 2] - v[i, 2])
-        )
-        cosine = t0[0] * t[0] + t0[1] * t[1] + t0[2] * t[2]
-        angular[e] = omega[e] + triple / (w.length[e] * (1.0 + cosine))
+        angular[e] = torque[e] + drag_torque[e]
+    solve_spin(a, m.eta_J, w.tangent, angular, spin_weight, bc.turned, bc.spin, omega, w.spin)
+    _material_rate(a.edges, base_tangent, w.tangent, w.length, v, omega, angular)
     return OK
+
+
+def _material_rate(edges, t0, t, length, v, omega, angular):
+    """Rate of the material angle: the spin, corrected for the turning of the reference director."""
+    for e in range(omega.shape[0]):
+        i = edges[e, 0]
+        j = edges[e, 1]
+        triple = (
+            (t0[e, 1] * t[e, 2] - t0[e, 2] * t[e, 1]) * (v[j, 0] - v[i, 0])
+            + (t0[e, 2] * t[e, 0] - t0[e, 0] * t[e, 2]) * (v[j, 1] - v[i, 1])
+            + (t0[e, 0] * t[e, 1] - t0[e, 1] * t[e, 0]) * (v[j, 2] - v[i, 2])
+        )
+        cosine = t0[e, 0] * t[e, 0] + t0[e, 1] * t[e, 1] + t0[e, 2] * t[e, 2]
+        angular[e] = omega[e] + triple / (length[e] * (1.0 + cosine))
 
 
 def powers(a, m, bc, v, omega, contacts, w):
@@ -236,39 +274,32 @@ def powers(a, m, bc, v, omega, contacts, w):
     External power is that of forces, torques and held ends. Dissipation is v . M v, the damping of spin
     and what the collision drag takes from it.
     """
-    apply_drag(a, m.eta_A, contacts, v, w.mobility.q)
+    drag, force, torque = w.mobility.q, w.force, w.torque
+    drag_torque, spin_weight, tangent = w.drag_torque, w.spin_weight, w.tangent
+    held, pull, turned, moment = bc.held, bc.force, bc.turned, bc.torque
+    apply_drag(a, m.eta_A, contacts, v, drag)
     external = 0.0
     dissipated = 0.0
     for i in range(v.shape[0]):
         for c in range(3):
-            drag = w.mobility.q[i, c]
-            dissipated += v[i, c] * drag
-            if bc.held[i]:
-                external += v[i, c] * (drag - w.force[i, c] + bc.force[i, c])
-            else:
-                external += v[i, c] * bc.force[i, c]
+            dissipated += v[i, c] * drag[i, c]
+            support = drag[i, c] - force[i, c] if held[i] else 0.0
+            external += v[i, c] * (pull[i, c] + support)
     for e in range(omega.shape[0]):
-        dissipated += omega[e] * (w.spin_weight[e] * omega[e] - w.drag_torque[e])
-        external += omega[e] * bc.torque[e]
-        if bc.turned[e]:
-            internal = w.torque[e] + w.drag_torque[e]
-            external += omega[e] * (w.spin_weight[e] * omega[e] - internal)
-    for k in range(a.hinges.shape[0]):
-        p = a.hinges[k, 0]
-        q = a.hinges[k, 1]
-        rate = m.eta_J / a.hinge_length[k]
-        c = (
-            w.tangent[p, 0] * w.tangent[q, 0]
-            + w.tangent[p, 1] * w.tangent[q, 1]
-            + w.tangent[p, 2] * w.tangent[q, 2]
-        )
-        on_p = rate * (omega[p] - c * omega[q])
-        on_q = rate * (omega[q] - c * omega[p])
-        dissipated += omega[p] * on_p + omega[q] * on_q
-        if bc.turned[p]:
-            external += omega[p] * on_p
-        if bc.turned[q]:
-            external += omega[q] * on_q
+        own = spin_weight[e] * omega[e] - drag_torque[e]
+        dissipated += omega[e] * own
+        support = own - torque[e] if turned[e] else 0.0
+        external += omega[e] * (moment[e] + support)
+    hinges, hinge_length = a.hinges, a.hinge_length
+    for k in range(hinges.shape[0]):
+        p = hinges[k, 0]
+        q = hinges[k, 1]
+        rate = m.eta_J / hinge_length[k]
+        c = tangent[p, 0] * tangent[q, 0] + tangent[p, 1] * tangent[q, 1] + tangent[p, 2] * tangent[q, 2]
+        on_p = rate * (omega[p] - c * omega[q]) * omega[p]
+        on_q = rate * (omega[q] - c * omega[p]) * omega[q]
+        dissipated += on_p + on_q
+        external += (on_p if turned[p] else 0.0) + (on_q if turned[q] else 0.0)
     return external, dissipated
 
 

@@ -24,7 +24,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade._compile import compile_kernels
-from torsade.rod.neighbours import excluded
 
 
 class Model(NamedTuple):
@@ -89,41 +88,44 @@ def contacts_among(pairs):
 
 def find_contacts(m, mid, contacts):
     """Fill contacts.edges, direction, distance with the pairs nearer than the diameter."""
+    pairs, edges, direction, distance = contacts.pairs, contacts.edges, contacts.direction, contacts.distance
+    reach = m.diameter * m.diameter
     count = 0
-    for k in range(contacts.pairs.shape[0]):
-        e = contacts.pairs[k, 0]
-        f = contacts.pairs[k, 1]
+    for k in range(pairs.shape[0]):
+        e = pairs[k, 0]
+        f = pairs[k, 1]
         dx = mid[f, 0] - mid[e, 0]
         dy = mid[f, 1] - mid[e, 1]
         dz = mid[f, 2] - mid[e, 2]
         squared = dx * dx + dy * dy + dz * dz
-        if squared < m.diameter * m.diameter:
+        if squared < reach:
             R = math.sqrt(squared)
             s = 1.0 / R
-            contacts.edges[count, 0] = e
-            contacts.edges[count, 1] = f
-            contacts.distance[count] = R
-            contacts.direction[count, 0] = dx * s
-            contacts.direction[count, 1] = dy * s
-            contacts.direction[count, 2] = dz * s
+            edges[count, 0] = e
+            edges[count, 1] = f
+            distance[count] = R
+            direction[count, 0] = dx * s
+            direction[count, 1] = dy * s
+            direction[count, 2] = dz * s
             count += 1
     contacts.count[0] = count
 
 
-def contact_area(a, m, e, f, length, tangent):
+def _area(projected, e, f, rest_length, length, tangent):
     """Area A_ef [m^2] of the contact of edges e and f."""
-    if m.projected:
+    if projected:
         cosine = tangent[e, 0] * tangent[f, 0] + tangent[e, 1] * tangent[f, 1] + tangent[e, 2] * tangent[f, 2]
         return length[e] * length[f] * abs(cosine)
-    return a.rest_length[e] * a.rest_length[f]
+    return rest_length[e] * rest_length[f]
 
 
 def contact_energy(a, m, length, tangent, contacts):
     """E_c [J]."""
+    rest_length, edges, distance = a.rest_length, contacts.edges, contacts.distance
     total = 0.0
     for k in range(contacts.count[0]):
-        p = 1.0 - contacts.distance[k] / m.diameter
-        area = contact_area(a, m, contacts.edges[k, 0], contacts.edges[k, 1], length, tangent)
+        p = 1.0 - distance[k] / m.diameter
+        area = _area(m.projected, edges[k, 0], edges[k, 1], rest_length, length, tangent)
         total += m.diameter * m.K * area * 0.5 * (p * p + m.p0_squared * p**4)
     return total
 
@@ -135,18 +137,20 @@ def contact_pressure(m, R):
 
 
 def add_contact_forces(a, m, length, tangent, contacts, force):
-    """Add -dE_c/dx of every contact to force (n_nodes, 3) [N], half to each node of an edge."""
+    """Add the force of every contact to force (n_nodes, 3) [N], half to each node of an edge."""
+    nodes, rest_length = a.edges, a.rest_length
+    edges, direction, distance = contacts.edges, contacts.direction, contacts.distance
     for k in range(contacts.count[0]):
-        e = contacts.edges[k, 0]
-        f = contacts.edges[k, 1]
-        area = contact_area(a, m, e, f, length, tangent)
-        half = 0.5 * area * contact_pressure(m, contacts.distance[k])
-        e0 = a.edges[e, 0]
-        e1 = a.edges[e, 1]
-        f0 = a.edges[f, 0]
-        f1 = a.edges[f, 1]
+        e = edges[k, 0]
+        f = edges[k, 1]
+        area = _area(m.projected, e, f, rest_length, length, tangent)
+        half = 0.5 * area * contact_pressure(m, distance[k])
+        e0 = nodes[e, 0]
+        e1 = nodes[e, 1]
+        f0 = nodes[f, 0]
+        f1 = nodes[f, 1]
         for c in range(3):
-            push = half * contacts.direction[k, c]
+            push = half * direction[k, c]
             force[e0, c] -= push
             force[e1, c] -= push
             force[f0, c] += push
@@ -155,81 +159,86 @@ def add_contact_forces(a, m, length, tangent, contacts, force):
 
 def compression(a, m, length, tangent, contacts):
     """Total compression force [N]: over every edge, the sum of the contact forces on it (Fig 4-1B)."""
+    rest_length, edges, distance = a.rest_length, contacts.edges, contacts.distance
     total = 0.0
     for k in range(contacts.count[0]):
-        area = contact_area(a, m, contacts.edges[k, 0], contacts.edges[k, 1], length, tangent)
-        total += 2.0 * area * contact_pressure(m, contacts.distance[k])
+        area = _area(m.projected, edges[k, 0], edges[k, 1], rest_length, length, tangent)
+        total += 2.0 * area * contact_pressure(m, distance[k])
     return total
 
 
-def _edge_before(a, e):
-    """The edge that ends where e starts, or -1 at a free end."""
-    fiber = a.edge_fiber[e]
-    if e > a.edge_start[fiber]:
+def _shift_back(e, fiber, edge_start, closed):
+    """The edge that ends where edge e starts, or -1 at a free end."""
+    if e > edge_start[fiber]:
         return e - 1
-    if a.closed[fiber]:
-        return a.edge_start[fiber + 1] - 1
-    return -1
+    return edge_start[fiber + 1] - 1 if closed[fiber] else -1
 
 
-def _touching(a, m, mid, e, f):
-    """Whether the midpoints of edges e and f (either may be -1) are nearer than the diameter."""
-    if e < 0 or f < 0 or excluded(a, e, f, m.exclusion_edges, m.exclusion_length):
-        return False
-    dx = mid[f, 0] - mid[e, 0]
-    dy = mid[f, 1] - mid[e, 1]
-    dz = mid[f, 2] - mid[e, 2]
-    return dx * dx + dy * dy + dz * dz < m.diameter * m.diameter
+def _shift_on(e, fiber, edge_start, closed):
+    """The edge that starts where edge e ends, or -1 at a free end."""
+    if e < edge_start[fiber + 1] - 1:
+        return e + 1
+    return edge_start[fiber] if closed[fiber] else -1
 
 
-def _node_length(a, fiber, i, length):
-    """Voronoi length [m] of node i with its edges as long as they are."""
-    edge = a.edge_start[fiber] + i - a.node_start[fiber]
-    after = length[edge] if edge < a.edge_start[fiber + 1] else 0.0
-    before = 0.0
-    if i > a.node_start[fiber]:
-        before = length[edge - 1]
-    elif a.closed[fiber]:
-        before = length[a.edge_start[fiber + 1] - 1]
-    return 0.5 * (before + after)
+def _find_node_pairs(a, m, x, length, mid, contacts):
+    """Node-pair drag: start nodes i, j couple when edges (i, j) or the edges before them touch.
 
-
-def _couple_nodes(a, m, x, length, e, f, end, contacts):
-    """The node-pair drag between the starts (end 0) or the ends (end 1) of edges e and f."""
-    i = a.edges[e, end]
-    j = a.edges[f, end]
-    dx = x[i, 0] - x[j, 0]
-    dy = x[i, 1] - x[j, 1]
-    dz = x[i, 2] - x[j, 2]
-    k = contacts.count[1]
-    contacts.drag_nodes[k, 0] = i
-    contacts.drag_nodes[k, 1] = i
-    contacts.drag_nodes[k, 2] = j
-    contacts.drag_nodes[k, 3] = j
-    mean = 0.5 * (_node_length(a, a.edge_fiber[e], i, length) + _node_length(a, a.edge_fiber[f], j, length))
-    contacts.drag_weight[k] = m.eta_f_A * mean / (dx * dx + dy * dy + dz * dz)
-    contacts.count[1] = k + 1
+    So do the end nodes of touching edges, which are the start nodes of the next ones; a coupling that
+    the edges before have already made is not made twice. Edges before are as far apart along a fiber.
+    """
+    nodes, edge_fiber, edge_start, closed = a.edges, a.edge_fiber, a.edge_start, a.closed
+    edges, drag_nodes, drag_weight = contacts.edges, contacts.drag_nodes, contacts.drag_weight
+    count = 0
+    for k in range(2 * contacts.count[0]):
+        end = 1 - k % 2
+        e = edges[k // 2, 0]
+        f = edges[k // 2, 1]
+        if end == 1:
+            eb = _shift_on(e, edge_fiber[e], edge_start, closed)
+            fb = _shift_on(f, edge_fiber[f], edge_start, closed)
+        else:
+            eb = _shift_back(e, edge_fiber[e], edge_start, closed)
+            fb = _shift_back(f, edge_fiber[f], edge_start, closed)
+        i = nodes[e, end]
+        j = nodes[f, end]
+        squared = 0.0
+        beside = 0.0
+        for c in range(3):
+            squared += (x[i, c] - x[j, c]) ** 2
+            beside += (mid[eb, c] - mid[fb, c]) ** 2
+        if end == 0 and eb >= 0 and fb >= 0 and beside < m.diameter * m.diameter:
+            continue
+        lbar = length[e] + length[f]
+        lbar += length[eb] if eb >= 0 else 0.0
+        lbar += length[fb] if fb >= 0 else 0.0
+        drag_nodes[count, 0] = i
+        drag_nodes[count, 1] = i
+        drag_nodes[count, 2] = j
+        drag_nodes[count, 3] = j
+        drag_weight[count] = m.eta_f_A * 0.25 * lbar / squared
+        count += 1
+    contacts.count[1] = count
 
 
 def find_drag(a, m, x, length, mid, contacts):
     """Fill contacts.drag_nodes and drag_weight from the contacts found, each coupling once."""
-    contacts.count[1] = 0
+    nodes, rest_length = a.edges, a.rest_length
+    edges, distance = contacts.edges, contacts.distance
+    drag_nodes, drag_weight = contacts.drag_nodes, contacts.drag_weight
+    if m.node_pair:
+        _find_node_pairs(a, m, x, length, mid, contacts)
+        return
     for k in range(contacts.count[0]):
-        e = contacts.edges[k, 0]
-        f = contacts.edges[k, 1]
-        if m.node_pair:
-            _couple_nodes(a, m, x, length, e, f, 1, contacts)
-            if not _touching(a, m, mid, _edge_before(a, e), _edge_before(a, f)):
-                _couple_nodes(a, m, x, length, e, f, 0, contacts)
-        else:
-            d = contacts.count[1]
-            contacts.drag_nodes[d, 0] = a.edges[e, 0]
-            contacts.drag_nodes[d, 1] = a.edges[e, 1]
-            contacts.drag_nodes[d, 2] = a.edges[f, 0]
-            contacts.drag_nodes[d, 3] = a.edges[f, 1]
-            area = a.rest_length[e] * a.rest_length[f]
-            contacts.drag_weight[d] = m.eta_f_A * area / contacts.distance[k] ** 3
-            contacts.count[1] = d + 1
+        e = edges[k, 0]
+        f = edges[k, 1]
+        R = distance[k]
+        drag_nodes[k, 0] = nodes[e, 0]
+        drag_nodes[k, 1] = nodes[e, 1]
+        drag_nodes[k, 2] = nodes[f, 0]
+        drag_nodes[k, 3] = nodes[f, 1]
+        drag_weight[k] = m.eta_f_A * rest_length[e] * rest_length[f] / (R * R * R)
+    contacts.count[1] = contacts.count[0]
 
 
 def add_drag_torques(a, m, v, tangent, contacts, torque, spin_weight):
@@ -239,26 +248,27 @@ def add_drag_torques(a, m, v, tangent, contacts, torque, spin_weight):
     strand (thesis 4.7, 4.9), with weight eta J l / R^2 (node-pair) or eta_f J l_e l_f / R^3 (continuum);
     spin_weight (n_edges,) [N m s] receives the weights when the model drags a strand's own spin.
     """
+    nodes, rest_length = a.edges, a.rest_length
+    edges, direction, distance = contacts.edges, contacts.direction, contacts.distance
     for k in range(contacts.count[0]):
-        e = contacts.edges[k, 0]
-        f = contacts.edges[k, 1]
-        R = contacts.distance[k]
-        r = contacts.direction[k]
-        e0 = a.edges[e, 0]
-        e1 = a.edges[e, 1]
-        f0 = a.edges[f, 0]
-        f1 = a.edges[f, 1]
+        e = edges[k, 0]
+        f = edges[k, 1]
+        R = distance[k]
+        rx, ry, rz = direction[k, 0], direction[k, 1], direction[k, 2]
+        e0 = nodes[e, 0]
+        e1 = nodes[e, 1]
+        f0 = nodes[f, 0]
+        f1 = nodes[f, 1]
         dx = 0.5 * (v[f0, 0] + v[f1, 0] - v[e0, 0] - v[e1, 0])
         dy = 0.5 * (v[f0, 1] + v[f1, 1] - v[e0, 1] - v[e1, 1])
         dz = 0.5 * (v[f0, 2] + v[f1, 2] - v[e0, 2] - v[e1, 2])
-        sx = (r[1] * dz - r[2] * dy) / R
-        sy = (r[2] * dx - r[0] * dz) / R
-        sz = (r[0] * dy - r[1] * dx) / R
-        if m.node_pair:
-            we = m.eta_f_J * a.rest_length[e] / (R * R)
-            wf = m.eta_f_J * a.rest_length[f] / (R * R)
-        else:
-            we = m.eta_f_J * a.rest_length[e] * a.rest_length[f] / (R * R * R)
+        sx = (ry * dz - rz * dy) / R
+        sy = (rz * dx - rx * dz) / R
+        sz = (rx * dy - ry * dx) / R
+        we = m.eta_f_J * rest_length[e] / (R * R)
+        wf = m.eta_f_J * rest_length[f] / (R * R)
+        if not m.node_pair:
+            we *= rest_length[f] / R
             wf = we
         torque[e] += we * (sx * tangent[e, 0] + sy * tangent[e, 1] + sz * tangent[e, 2])
         torque[f] += wf * (sx * tangent[f, 0] + sy * tangent[f, 1] + sz * tangent[f, 2])
@@ -267,4 +277,4 @@ def add_drag_torques(a, m, v, tangent, contacts, torque, spin_weight):
             spin_weight[f] += wf
 
 
-compile_kernels(__name__)
+compile_kernels(__name__, inline=("contact_pressure", "_area", "_shift_back", "_shift_on"))

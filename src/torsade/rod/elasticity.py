@@ -33,24 +33,24 @@ def stretch_energy(a, EA, length):
     return total
 
 
-def _bend_length(a, k, present, length):
-    """The length [m] over which hinge k bends."""
-    if present:
-        return 0.5 * (length[a.hinges[k, 0]] + length[a.hinges[k, 1]])
-    return a.hinge_length[k]
+def _bend_length(rest, present, before, after):
+    """The length [m] over which a hinge bends: at rest, or the mean of its edges as long as they are."""
+    return 0.5 * (before + after) if present else rest
 
 
 def bend_energy(a, B, present, length, tangent):
     """E_b [J]; |kb|^2 = 4 (1 - c)/(1 + c) with c = t_a . t_b, without cancellation."""
+    hinges, hinge_length = a.hinges, a.hinge_length
     total = 0.0
-    for k in range(a.hinges.shape[0]):
-        p = tangent[a.hinges[k, 0]]
-        q = tangent[a.hinges[k, 1]]
-        dx = q[0] - p[0]
-        dy = q[1] - p[1]
-        dz = q[2] - p[2]
+    for k in range(hinges.shape[0]):
+        p = hinges[k, 0]
+        q = hinges[k, 1]
+        dx = tangent[q, 0] - tangent[p, 0]
+        dy = tangent[q, 1] - tangent[p, 1]
+        dz = tangent[q, 2] - tangent[p, 2]
         half = 0.5 * (dx * dx + dy * dy + dz * dz)
-        total += 0.5 * B * 4.0 * half / (2.0 - half) / _bend_length(a, k, present, length)
+        lbar = _bend_length(hinge_length[k], present, length[p], length[q])
+        total += 0.5 * B * 4.0 * half / (2.0 - half) / lbar
     return total
 
 
@@ -68,55 +68,51 @@ def add_elastic_forces(a, EA, B, C, present, length, tangent, m, force, torque):
     Positions vary at fixed material angle about time-parallel directors, so a hinge's twist changes
     with its edges by kb/2 . (de_a/|e_a| + de_b/|e_b|).
     """
+    edges, hinges, rest_length, hinge_length = a.edges, a.hinges, a.rest_length, a.hinge_length
     for e in range(length.shape[0]):
-        pull = EA * (length[e] / a.rest_length[e] - 1.0)
-        _add_edge_force(a.edges[e, 0], a.edges[e, 1], pull, tangent[e], force)
-    for k in range(a.hinges.shape[0]):
-        p = a.hinges[k, 0]
-        q = a.hinges[k, 1]
-        ta = tangent[p]
-        tb = tangent[q]
-        c = ta[0] * tb[0] + ta[1] * tb[1] + ta[2] * tb[2]
-        s = 1.0 / (1.0 + c)
-        moment = C * m[k] / a.hinge_length[k]
+        pull = EA * (length[e] / rest_length[e] - 1.0)
+        i = edges[e, 0]
+        j = edges[e, 1]
+        for c in range(3):
+            force[i, c] += pull * tangent[e, c]
+            force[j, c] -= pull * tangent[e, c]
+    for k in range(hinges.shape[0]):
+        p = hinges[k, 0]
+        q = hinges[k, 1]
+        ax, ay, az = tangent[p, 0], tangent[p, 1], tangent[p, 2]
+        bx, by, bz = tangent[q, 0], tangent[q, 1], tangent[q, 2]
+        cosine = ax * bx + ay * by + az * bz
+        s = 1.0 / (1.0 + cosine)
+        moment = C * m[k] / hinge_length[k]
         torque[p] += moment
         torque[q] -= moment
-        lbar = _bend_length(a, k, present, length)
+        lbar = _bend_length(hinge_length[k], present, length[p], length[q])
         bend = -4.0 * B * s * s / lbar
-        ease = B * (1.0 - c) * s / (lbar * lbar) if present else 0.0
-        nx = (ta[1] * tb[2] - ta[2] * tb[1]) * s * moment
-        ny = (ta[2] * tb[0] - ta[0] * tb[2]) * s * moment
-        nz = (ta[0] * tb[1] - ta[1] * tb[0]) * s * moment
+        ease = B * (1.0 - cosine) * s / (lbar * lbar) if present else 0.0
+        turn = s * moment
+        nx = (ay * bz - az * by) * turn
+        ny = (az * bx - ax * bz) * turn
+        nz = (ax * by - ay * bx) * turn
         ra = 1.0 / length[p]
         rb = 1.0 / length[q]
-        i = a.edges[p, 0]
-        j = a.edges[p, 1]
-        n = a.edges[q, 1]
-        gax = (bend * (tb[0] - c * ta[0]) + nx) * ra - ease * ta[0]
-        gay = (bend * (tb[1] - c * ta[1]) + ny) * ra - ease * ta[1]
-        gaz = (bend * (tb[2] - c * ta[2]) + nz) * ra - ease * ta[2]
-        gbx = (bend * (ta[0] - c * tb[0]) + nx) * rb - ease * tb[0]
-        gby = (bend * (ta[1] - c * tb[1]) + ny) * rb - ease * tb[1]
-        gbz = (bend * (ta[2] - c * tb[2]) + nz) * rb - ease * tb[2]
-        force[i, 0] += gax
-        force[i, 1] += gay
-        force[i, 2] += gaz
-        force[j, 0] += gbx - gax
-        force[j, 1] += gby - gay
-        force[j, 2] += gbz - gaz
-        force[n, 0] -= gbx
-        force[n, 1] -= gby
-        force[n, 2] -= gbz
-
-
-def _add_edge_force(i, j, pull, t, force):
-    """A tension pull [N] along the unit tangent t draws node i towards node j and j towards i."""
-    force[i, 0] += pull * t[0]
-    force[i, 1] += pull * t[1]
-    force[i, 2] += pull * t[2]
-    force[j, 0] -= pull * t[0]
-    force[j, 1] -= pull * t[1]
-    force[j, 2] -= pull * t[2]
+        fax = (bend * (bx - cosine * ax) + nx) * ra - ease * ax
+        fay = (bend * (by - cosine * ay) + ny) * ra - ease * ay
+        faz = (bend * (bz - cosine * az) + nz) * ra - ease * az
+        fbx = (bend * (ax - cosine * bx) + nx) * rb - ease * bx
+        fby = (bend * (ay - cosine * by) + ny) * rb - ease * by
+        fbz = (bend * (az - cosine * bz) + nz) * rb - ease * bz
+        i = edges[p, 0]
+        j = edges[p, 1]
+        n = edges[q, 1]
+        force[i, 0] += fax
+        force[i, 1] += fay
+        force[i, 2] += faz
+        force[j, 0] += fbx - fax
+        force[j, 1] += fby - fay
+        force[j, 2] += fbz - faz
+        force[n, 0] -= fbx
+        force[n, 1] -= fby
+        force[n, 2] -= fbz
 
 
 def hinge_curvature(a, tangent, kappa):
@@ -131,4 +127,4 @@ def hinge_curvature(a, tangent, kappa):
         kappa[k] = 2.0 * math.sqrt(half / (2.0 - half)) / a.hinge_length[k]
 
 
-compile_kernels(__name__)
+compile_kernels(__name__, inline=("_bend_length",))

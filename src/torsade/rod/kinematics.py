@@ -30,19 +30,18 @@ def edge_geometry(x, edges, length, tangent):
         tangent[e, 2] = dz * s
 
 
-def solid_angle_tangent(a, b, c):
-    """Numerator and denominator of tan(Omega/2) of the spherical triangle of unit vectors a, b, c.
+def _half_solid_angle(p, i, q, j, r, k):
+    """Numerator and denominator of tan(Omega/2) of the spherical triangle of unit vectors p[i], q[j], r[k].
 
     Van Oosterom and Strackee (1983): tan(Omega/2) = a.(b x c) / (1 + a.b + b.c + c.a).
     """
-    numerator = (
-        a[0] * (b[1] * c[2] - b[2] * c[1])
-        + a[1] * (b[2] * c[0] - b[0] * c[2])
-        + a[2] * (b[0] * c[1] - b[1] * c[0])
-    )
-    ab = a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-    bc = b[0] * c[0] + b[1] * c[1] + b[2] * c[2]
-    ca = c[0] * a[0] + c[1] * a[1] + c[2] * a[2]
+    ax, ay, az = p[i, 0], p[i, 1], p[i, 2]
+    bx, by, bz = q[j, 0], q[j, 1], q[j, 2]
+    cx, cy, cz = r[k, 0], r[k, 1], r[k, 2]
+    numerator = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
+    ab = ax * bx + ay * by + az * bz
+    bc = bx * cx + by * cy + bz * cz
+    ca = cx * ax + cy * ay + cz * az
     return numerator, 1.0 + ab + bc + ca
 
 
@@ -58,15 +57,15 @@ def small_atan(y, x):
 def reference_twist_change(tangent_0, tangent, hinges, change):
     """Exact change of every hinge's reference twist as tangents move from tangent_0 to tangent.
 
-    With both directors parallel transported in time, the change is minus the area on the unit sphere
-    enclosed by the path t_a0, t_b0, t_b, t_a (holonomy). Arrays (n_edges, 3), change (n_hinges,) [rad].
+    With both directors parallel transported in time, the change is the area on the unit sphere enclosed
+    by the path t_a0, t_b0, t_b, t_a (holonomy). Arrays (n_edges, 3), change (n_hinges,) [rad].
     """
     for k in range(hinges.shape[0]):
         a = hinges[k, 0]
         b = hinges[k, 1]
-        y1, x1 = solid_angle_tangent(tangent_0[a], tangent_0[b], tangent[b])
-        y2, x2 = solid_angle_tangent(tangent_0[a], tangent[b], tangent[a])
-        change[k] = -2.0 * small_atan(x1 * y2 + y1 * x2, x1 * x2 - y1 * y2)
+        y1, x1 = _half_solid_angle(tangent_0, a, tangent_0, b, tangent, b)
+        y2, x2 = _half_solid_angle(tangent_0, a, tangent, b, tangent, a)
+        change[k] = 2.0 * small_atan(x1 * y2 + y1 * x2, x1 * x2 - y1 * y2)
 
 
 def transport(u, a, b, out):
@@ -120,4 +119,4 @@ def reference_twist(director, tangent, hinges, twist):
         twist[k] = angle + 2.0 * math.pi * round((twist[k] - angle) / (2.0 * math.pi))
 
 
-compile_kernels(__name__)
+compile_kernels(__name__, inline=("_half_solid_angle", "small_atan", "transport"))

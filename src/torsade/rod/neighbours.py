@@ -1,4 +1,8 @@
-"""Verlet lists: pairs of edges that may come into contact before the list is made again."""
+"""Verlet lists: pairs of edges that may come into contact before the list is made again.
+
+Edges of one fiber are excluded when they are at most exclusion_edges apart in number, or nearer than
+exclusion_length [m] in rest arclength; around the seam of a closed fiber the shorter way counts.
+"""
 
 from __future__ import annotations
 
@@ -7,23 +11,6 @@ import math
 import numpy as np
 
 from torsade._compile import compile_kernels
-
-
-def excluded(a, e, f, exclusion_edges, exclusion_length):
-    """Whether edges e and f are too close along one fiber for their distance to be a contact.
-
-    They are when at most exclusion_edges apart in number, or nearer than exclusion_length [m] in rest
-    arclength; around the seam of a closed fiber the shorter way counts.
-    """
-    fiber = a.edge_fiber[e]
-    if fiber != a.edge_fiber[f]:
-        return False
-    apart = abs(e - f)
-    distance = abs(a.edge_arclength[e] - a.edge_arclength[f])
-    if a.closed[fiber]:
-        apart = min(apart, a.edge_start[fiber + 1] - a.edge_start[fiber] - apart)
-        distance = min(distance, a.fiber_length[fiber] - distance)
-    return apart <= exclusion_edges or distance < exclusion_length
 
 
 def edge_midpoints(x, edges, mid):
@@ -39,50 +26,91 @@ def _bucket(i, j, k, mask):
     return ((i * 73856093) ^ (j * 19349663) ^ (k * 83492791)) & mask
 
 
-def neighbour_pairs(a, mid, cutoff, exclusion_edges, exclusion_length):
-    """All pairs e < f of edges with midpoints nearer than cutoff [m], excluded ones left out.
+def _hash_cells(mid, side, head, following, cell):
+    """Linked lists of the points in every bucket; head (size,), following (n,), cell (n, 3)."""
+    head[:] = -1
+    mask = head.shape[0] - 1
+    for e in range(mid.shape[0] - 1, -1, -1):
+        for c in range(3):
+            cell[e, c] = math.floor(mid[e, c] / side)
+        b = _bucket(cell[e, 0], cell[e, 1], cell[e, 2], mask)
+        following[e] = head[b]
+        head[b] = e
 
-    Linear in the number of edges: points are hashed by their cell of side cutoff. Returns an int64
-    array (n_pairs, 2) ordered by e, the same for the same input.
+
+def near_points(mid, cutoff):
+    """All pairs e < f of points mid (n, 3) [m] nearer than cutoff [m].
+
+    Linear in the number of points: they are hashed by their cell of side cutoff. Returns an int64 array
+    (n_pairs, 2) ordered by e, the same for the same input.
     """
     n = mid.shape[0]
     size = 16
     while size < 2 * n:
         size *= 2
     mask = size - 1
-    head = np.full(size, -1, np.int64)
+    head = np.empty(size, np.int64)
     following = np.empty(n, np.int64)
     cell = np.empty((n, 3), np.int64)
-    for e in range(n - 1, -1, -1):
-        for c in range(3):
-            cell[e, c] = math.floor(mid[e, c] / cutoff)
-        b = _bucket(cell[e, 0], cell[e, 1], cell[e, 2], mask)
-        following[e] = head[b]
-        head[b] = e
-    pairs = np.empty((max(64, 4 * n), 2), np.int64)
-    count = 0
+    _hash_cells(mid, cutoff, head, following, cell)
+    reach = cutoff * cutoff
+    pairs = np.empty((max(64, 8 * n), 2), np.int64)
+    total = 0
     for e in range(n):
+        x, y, z = mid[e, 0], mid[e, 1], mid[e, 2]
         for shift in range(27):
             i = cell[e, 0] + shift // 9 - 1
-            j = cell[e, 1] + (shift // 3) % 3 - 1
+            j = cell[e, 1] + shift // 3 % 3 - 1
             k = cell[e, 2] + shift % 3 - 1
             f = head[_bucket(i, j, k, mask)]
             while f >= 0:
                 if f > e and cell[f, 0] == i and cell[f, 1] == j and cell[f, 2] == k:
-                    dx = mid[e, 0] - mid[f, 0]
-                    dy = mid[e, 1] - mid[f, 1]
-                    dz = mid[e, 2] - mid[f, 2]
-                    near = dx * dx + dy * dy + dz * dz < cutoff * cutoff
-                    if near and not excluded(a, e, f, exclusion_edges, exclusion_length):
-                        if count == pairs.shape[0]:
-                            grown = np.empty((2 * count, 2), np.int64)
-                            grown[:count] = pairs
+                    dx = mid[f, 0] - x
+                    dy = mid[f, 1] - y
+                    dz = mid[f, 2] - z
+                    if dx * dx + dy * dy + dz * dz < reach:
+                        if total == pairs.shape[0]:
+                            grown = np.empty((2 * total, 2), np.int64)
+                            grown[:total] = pairs
                             pairs = grown
-                        pairs[count, 0] = e
-                        pairs[count, 1] = f
-                        count += 1
+                        pairs[total, 0] = e
+                        pairs[total, 1] = f
+                        total += 1
                 f = following[f]
-    return pairs[:count].copy()
+    return pairs[:total]
 
 
-compile_kernels(__name__)
+def neighbour_pairs(a, mid, cutoff, exclusion_edges, exclusion_length):
+    """All pairs e < f of edges with midpoints nearer than cutoff [m], excluded ones left out."""
+    return without_excluded(a, near_points(mid, cutoff), mid, cutoff, exclusion_edges, exclusion_length)
+
+
+def without_excluded(a, pairs, mid, cutoff, exclusion_edges, exclusion_length):
+    """The pairs (n_pairs, 2) with midpoints nearer than cutoff [m] that are not excluded."""
+    edge_fiber, edge_start, closed = a.edge_fiber, a.edge_start, a.closed
+    arclength, fiber_length = a.edge_arclength, a.fiber_length
+    kept = np.empty_like(pairs)
+    count = 0
+    for k in range(pairs.shape[0]):
+        e = pairs[k, 0]
+        f = pairs[k, 1]
+        dx = mid[e, 0] - mid[f, 0]
+        dy = mid[e, 1] - mid[f, 1]
+        dz = mid[e, 2] - mid[f, 2]
+        keep = dx * dx + dy * dy + dz * dz < cutoff * cutoff
+        fiber = edge_fiber[e]
+        if keep and fiber == edge_fiber[f]:
+            apart = abs(e - f)
+            distance = abs(arclength[e] - arclength[f])
+            if closed[fiber]:
+                apart = min(apart, edge_start[fiber + 1] - edge_start[fiber] - apart)
+                distance = min(distance, fiber_length[fiber] - distance)
+            keep = apart > exclusion_edges and distance >= exclusion_length
+        if keep:
+            kept[count, 0] = e
+            kept[count, 1] = f
+            count += 1
+    return kept[:count].copy()
+
+
+compile_kernels(__name__, inline=("_bucket",))

@@ -1,0 +1,293 @@
+"""Explicit schemes for overdamped fibers: stabilised second order with error estimate, and Euler.
+
+The Runge-Kutta-Chebyshev method (Sommeijer, Shampine and Verwer 1998) takes s stages that are stable up
+to a step of about 0.65 s^2 over the spectral radius, so steps are as long as accuracy allows. Every
+evaluation of the rates passes through one place, `evaluate`, which keeps compilation short.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from torsade._compile import compile_kernels
+from torsade.motion.rates import OK, Work, rate_work, rates
+
+MAX_STAGES = 40
+
+START = np.int64(0)
+SPECTRUM = np.int64(1)
+STEP = np.int64(2)
+ONE_STAGE = np.int64(1)
+"""Not literals: a kernel would be compiled again for every literal that it is called with."""
+
+
+class Control(NamedTuple):
+    """How to step: fixed step [s] (0: error-controlled), tolerance [m] and [rad h], solver tolerance.
+
+    tolerance is the local error allowed per step in any node position, and, divided by the radius,
+    in any material angle. skin [m] is the reach of the Verlet list beyond the diameter, move [m] the
+    farthest any node may go in one step.
+    """
+
+    fixed_step: float
+    tolerance: float
+    radius: float
+    solver_tolerance: float
+    skin: float
+    move: float
+
+
+class Stages(NamedTuple):
+    """Scratch of a run: the newest stage (x, theta) and two before it, with rates v, angular, omega.
+
+    v0, angular0 are the rates at the start of the step; table (MAX_STAGES + 1, 5) holds the weights of
+    a step's stages; tangent, length, mid belong to the last completed step; listed (n_nodes, 3) are the
+    positions of the last neighbour list; estimate[0] the spectral radius [1/s], estimate[1] the number
+    of evaluations it took.
+    """
+
+    x: NDArray[np.float64]
+    theta: NDArray[np.float64]
+    x1: NDArray[np.float64]
+    theta1: NDArray[np.float64]
+    x2: NDArray[np.float64]
+    theta2: NDArray[np.float64]
+    v0: NDArray[np.float64]
+    angular0: NDArray[np.float64]
+    v: NDArray[np.float64]
+    angular: NDArray[np.float64]
+    omega: NDArray[np.float64]
+    tangent: NDArray[np.float64]
+    length: NDArray[np.float64]
+    mid: NDArray[np.float64]
+    listed: NDArray[np.float64]
+    table: NDArray[np.float64]
+    estimate: NDArray[np.float64]
+    work: Work
+
+
+def stage_work(a):
+    """Scratch of a run."""
+    n = a.node_length.shape[0]
+    n_edges = a.edges.shape[0]
+    return Stages(
+        np.empty((n, 3)),
+        np.empty(n_edges),
+        np.empty((n, 3)),
+        np.empty(n_edges),
+        np.empty((n, 3)),
+        np.empty(n_edges),
+        np.empty((n, 3)),
+        np.empty(n_edges),
+        np.empty((n, 3)),
+        np.empty(n_edges),
+        np.empty(n_edges),
+        np.empty((n_edges, 3)),
+        np.empty(n_edges),
+        np.empty((n_edges, 3)),
+        np.empty((n, 3)),
+        np.empty((MAX_STAGES + 1, 5)),
+        np.zeros(2),
+        rate_work(a),
+    )
+
+
+def copy(source, out):
+    """out = source, arrays (n, 3)."""
+    for i in range(out.shape[0]):
+        for c in range(3):
+            out[i, c] = source[i, c]
+
+
+def copy_flat(source, out):
+    """out = source, arrays (n,)."""
+    for i in range(out.shape[0]):
+        out[i] = source[i]
+
+
+def stages_for(dt, spectrum):
+    """Stages that a step dt [s] needs to be stable, and the step, shortened when that is too many."""
+    stages = 1 + math.ceil(math.sqrt(1.0 + 1.54 * dt * spectrum))
+    if stages > MAX_STAGES:
+        return MAX_STAGES, (MAX_STAGES * MAX_STAGES - 2.0 * MAX_STAGES) / (1.54 * spectrum)
+    return max(2, stages), dt
+
+
+def chebyshev_table(stages, dt, table):
+    """Weights of stage j in row j of table: of x_0, x_(j-1), x_(j-2), v_(j-1) and v_0.
+
+    One stage is explicit Euler.
+    """
+    table[1] = (1.0, 0.0, 0.0, dt, 0.0)
+    if stages == 1:
+        return
+    w0 = 1.0 + 2.0 / (13.0 * stages * stages)
+    t1, t0, d1, d0, e1, e0 = w0, 1.0, 1.0, 0.0, 0.0, 0.0
+    for _ in range(2, stages + 1):
+        t1, t0, d1, d0, e1, e0 = (
+            2.0 * w0 * t1 - t0,
+            t1,
+            2.0 * w0 * d1 - d0 + 2.0 * t1,
+            d1,
+            2.0 * w0 * e1 - e0 + 4.0 * d1,
+            e1,
+        )
+    w1 = d1 / e1
+    b1 = b0 = 1.0 / (4.0 * w0 * w0)
+    a1 = 1.0 - b1 * w0
+    table[1, 3] = b1 * w1 * dt
+    t1, t0, d1, d0, e1, e0 = w0, 1.0, 1.0, 0.0, 0.0, 0.0
+    for j in range(2, stages + 1):
+        t = 2.0 * w0 * t1 - t0
+        d = 2.0 * w0 * d1 - d0 + 2.0 * t1
+        e = 2.0 * w0 * e1 - e0 + 4.0 * d1
+        b = e / (d * d)
+        mu = 2.0 * b * w0 / b1
+        nu = -b / b0
+        step = 2.0 * b * w1 / b1 * dt
+        table[j] = (1.0 - mu - nu, mu, nu, step, -a1 * step)
+        b1, b0, a1 = b, b1, 1.0 - b * t
+        t1, t0, d1, d0, e1, e0 = t, t1, d, d1, e, e1
+
+
+def _next_stage(weights, state, g):
+    """Make (g.x, g.theta) the next stage, and the one before it (g.x1, g.theta1)."""
+    c0, c1, c2, cv, cv0 = weights[0], weights[1], weights[2], weights[3], weights[4]
+    x0, x, x1, x2, v, v0 = state.x, g.x, g.x1, g.x2, g.v, g.v0
+    for i in range(x.shape[0]):
+        for c in range(3):
+            x2[i, c] = x1[i, c]
+            x1[i, c] = x[i, c]
+            x[i, c] = c0 * x0[i, c] + c1 * x1[i, c] + c2 * x2[i, c] + cv * v[i, c] + cv0 * v0[i, c]
+    p0, p, p1, p2, r, r0 = state.theta, g.theta, g.theta1, g.theta2, g.angular, g.angular0
+    for e in range(p.shape[0]):
+        p2[e] = p1[e]
+        p1[e] = p[e]
+        p[e] = c0 * p0[e] + c1 * p1[e] + c2 * p2[e] + cv * r[e] + cv0 * r0[e]
+
+
+def _seed_mode(mode_x, mode_theta):
+    """A rough direction that holds every mode; the same for every run."""
+    seed = np.uint64(88172645463325252)
+    for i in range(mode_x.shape[0]):
+        for c in range(3):
+            seed ^= seed << np.uint64(13)
+            seed ^= seed >> np.uint64(7)
+            seed ^= seed << np.uint64(17)
+            mode_x[i, c] = float(seed >> np.uint64(11)) / 9007199254740992.0 - 0.5
+    for e in range(mode_theta.shape[0]):
+        mode_theta[e] = 0.5 if e % 2 == 0 else -0.5
+
+
+def _size(mode_x, mode_theta):
+    """Euclidean norm of a mode: positions in radii, angles in radians."""
+    total = 0.0
+    for i in range(mode_x.shape[0]):
+        for c in range(3):
+            total += mode_x[i, c] ** 2
+    for e in range(mode_theta.shape[0]):
+        total += mode_theta[e] ** 2
+    return math.sqrt(total)
+
+
+def _perturb(state, radius, g):
+    """Make (g.x, g.theta) the state displaced along the mode in g.x2, g.theta2; returns how far."""
+    factor = 1e-4 * math.sqrt(g.x.shape[0]) / _size(g.x2, g.theta2)
+    x0, x, mode_x = state.x, g.x, g.x2
+    for i in range(x.shape[0]):
+        for c in range(3):
+            x[i, c] = x0[i, c] + factor * radius * mode_x[i, c]
+    theta0, theta, mode_theta = state.theta, g.theta, g.theta2
+    for e in range(theta.shape[0]):
+        theta[e] = theta0[e] + factor * mode_theta[e]
+    return factor
+
+
+def _response(radius, factor, g):
+    """Make the mode the change of the rates; returns its growth [1/s]."""
+    mode_x, mode_theta = g.x2, g.theta2
+    before = _size(mode_x, mode_theta)
+    v, v0, angular, angular0 = g.v, g.v0, g.angular, g.angular0
+    for i in range(mode_x.shape[0]):
+        for c in range(3):
+            mode_x[i, c] = (v[i, c] - v0[i, c]) / radius
+    for e in range(mode_theta.shape[0]):
+        mode_theta[e] = angular[e] - angular0[e]
+    return _size(mode_x, mode_theta) / (before * factor)
+
+
+def _prepare(job, state, g):
+    """Set up the running stages of a job."""
+    if job == START:
+        copy(state.v, g.v)
+    else:
+        copy(g.v0, g.v)
+        copy_flat(g.angular0, g.angular)
+    copy(state.x, g.x)
+    copy_flat(state.theta, g.theta)
+    copy(state.x, g.x1)
+    copy_flat(state.theta, g.theta1)
+    if job == SPECTRUM:
+        _seed_mode(g.x2, g.theta2)
+        g.estimate[0] = 0.0
+
+
+def evaluate(job, a, m, bc, state, near, control, dt, stages, g):
+    """Evaluate the rates as often as a job needs, into g; returns their status.
+
+    START: at the present state. STEP: at every stage of a step dt [s] (one stage: explicit Euler); the
+    last stage, in g.x and g.theta, is the result. SPECTRUM: at small displacements, to estimate the
+    spectral radius by power iteration, always from the same direction; stretch waves of every length
+    decay at E/eta, so few iterations find it.
+    """
+    _prepare(job, state, g)
+    if job == STEP:
+        chebyshev_table(stages, dt, g.table)
+    most = stages if job == STEP else (12 if job == SPECTRUM else 1)
+    for k in range(most):
+        factor = 0.0
+        if job == STEP:
+            _next_stage(g.table[k + 1], state, g)
+        elif job == SPECTRUM:
+            factor = _perturb(state, control.radius, g)
+            copy(g.v0, g.v)
+        status = rates(
+            a, m, bc, g.x, g.theta, g.tangent, state.reference_twist, near, control.solver_tolerance,
+            g.v, g.omega, g.angular, g.work,
+        )  # fmt: skip
+        g.estimate[1] = k + 1.0
+        if status != OK:
+            return status
+        if job == SPECTRUM:
+            previous = g.estimate[0]
+            g.estimate[0] = _response(control.radius, factor, g)
+            if k > 1 and abs(g.estimate[0] - previous) < 0.05 * g.estimate[0]:
+                return OK
+    return OK
+
+
+def embedded_error(state, g, dt, radius):
+    """Largest embedded error estimate of positions and of material angles times radius [m]."""
+    largest = 0.0
+    for i in range(g.x.shape[0]):
+        total = 0.0
+        for c in range(3):
+            estimate = 0.8 * (state.x[i, c] - g.x[i, c]) + 0.4 * dt * (g.v0[i, c] + g.v[i, c])
+            total += estimate * estimate
+        largest = max(largest, total)
+        if not total < 1e300:
+            return math.inf
+    largest = math.sqrt(largest)
+    for e in range(g.theta.shape[0]):
+        estimate = 0.8 * (state.theta[e] - g.theta[e]) + 0.4 * dt * (g.angular0[e] + g.angular[e])
+        largest = max(largest, abs(estimate) * radius)
+        if not abs(estimate) < 1e300:
+            return math.inf
+    return largest
+
+
+compile_kernels(__name__, inline=("copy", "copy_flat"))
