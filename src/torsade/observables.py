@@ -131,8 +131,8 @@ def friction(
     """Topological friction c_f = F 2h/(eta A v) of a pulled bend (thesis 4.6), and when it slips.
 
     v is the mean pull speed, separation difference over time, from 0.3 s to the end or to slipping.
-    The bend slips at the first frame after 0.3 s over whose interval the pull speed exceeds twice the
-    mean since 0.3 s, or when nothing resists the pull any more, whichever is earlier. When it slips
+    The bend slips when the pull speed first exceeds twice the mean since 0.3 s (between frames, by linear
+    interpolation of their ratio), or when nothing resists the pull any more, whichever is earlier. When it slips
     before 0.3 s, or the history is no longer than that, v is the mean from the start.
 
     Parameters
@@ -158,13 +158,17 @@ def friction(
 
 
 def _first_slip(t: Floats, s: Floats) -> float | None:
-    """The first frame after `SETTLED` that is reached at more than `SLIP_RATIO` times the mean speed."""
-    if not t[-1] > SETTLED:
+    """When the pull speed first passes `SLIP_RATIO` times the mean speed since `SETTLED` [s]."""
+    after = t > SETTLED * (1 + 1e-9)
+    if not after.any():
         return None
-    mean = (s - np.interp(SETTLED, t, s)) / np.where(t > SETTLED, t - SETTLED, np.inf)
-    with np.errstate(invalid="ignore"):
-        fast = (t > SETTLED * (1 + 1e-9)) & (pull_speed(t, s) > SLIP_RATIO * mean) & (mean > 0)
-    return float(t[np.argmax(fast)]) if fast.any() else None
+    mean = (s - np.interp(SETTLED, t, s)) / np.where(after, t - SETTLED, np.inf)
+    ratio = np.where(after & (mean > 0), pull_speed(t, s) / np.where(mean > 0, mean, 1.0), 1.0)
+    fast = ratio > SLIP_RATIO
+    if not fast.any():
+        return None
+    k = int(np.argmax(fast))
+    return float(t[k - 1] + (t[k] - t[k - 1]) * (SLIP_RATIO - ratio[k - 1]) / (ratio[k] - ratio[k - 1]))
 
 
 def _edge_vectors(assembly: Assembly, state: State) -> Floats:
