@@ -12,10 +12,11 @@ from torsade.material import Material, Section
 from torsade.motion import rates as rates_module
 from torsade.motion.ends import Boundary, free
 from torsade.motion.overdamped import STANDARD, Laws, model
-from torsade.rod.contact import Contacts, Model, add_drag_torques, contacts_among
+from torsade.rod.contact import Model, add_drag_torques, contacts_among
 from torsade.rod.damping import apply_drag
 from torsade.rod.kinematics import edge_geometry
 from torsade.rod.neighbours import edge_midpoints, neighbour_pairs
+from torsade.rod.skyline import skyline_for
 
 Floats = NDArray[np.float64]
 
@@ -112,14 +113,26 @@ def _rotated(state: State, fiber_edges: slice, angle: float) -> State:
 
 
 class Probe:
-    """Energies, forces and rates of a state at displaced nodes and angles, frames carried from the state."""
+    """Energies, forces and rates of a state at displaced nodes and angles, frames carried from the state.
 
-    def __init__(self, a: Assembly, m: Model, state: State, bc: Boundary | None = None) -> None:
+    Velocities are solved for directly; with worth=0, by conjugate gradients.
+    """
+
+    def __init__(
+        self,
+        a: Assembly,
+        m: Model,
+        state: State,
+        bc: Boundary | None = None,
+        worth: float = rates_module.WORTH,
+    ) -> None:
         self.a, self.m, self.state, self.bc = a, m, state, bc or free(a)
         self.length, self.tangent = np.empty(len(a.edges)), np.empty((len(a.edges), 3))
         edge_geometry(state.x, a.edges, self.length, self.tangent)
         self.work = rates_module.rate_work(a)
-        self.contacts = contact_list(a, m, state.x, 3 * m.diameter)
+        pairs = pairs_within(a, state.x, 3 * m.diameter, m.exclusion_edges, m.exclusion_length)
+        self.contacts = contacts_among(pairs)
+        self.near = rates_module.Near(pairs, self.contacts, skyline_for(a, pairs, worth))
 
     def evaluate(self, x: Floats, theta: Floats) -> None:
         rates_module.forces(
@@ -147,7 +160,7 @@ class Probe:
         v, omega, angular = np.zeros_like(x), np.empty_like(theta), np.empty_like(theta)
         status = rates_module.rates(
             self.a, self.m, self.bc, x, theta, self.tangent, self.state.reference_twist,
-            self.contacts, tolerance, v, omega, angular, self.work,
+            self.near, tolerance, v, omega, angular, self.work,
         )  # fmt: skip
         assert status == rates_module.OK
         return v, omega, angular
@@ -186,11 +199,6 @@ class Probe:
             assert np.ptp(out, axis=1).max() == 0.0
             matrix[:, i] = out[:, 0]
         return matrix
-
-
-def contact_list(a: Assembly, m: Model, x: Floats, cutoff: float) -> Contacts:
-    """Empty contacts over the Verlet list of the given reach."""
-    return contacts_among(pairs_within(a, x, cutoff, m.exclusion_edges, m.exclusion_length))
 
 
 def midpoints(a: Assembly, x: Floats) -> Floats:
