@@ -131,9 +131,9 @@ def friction(
     """Topological friction c_f = F 2h/(eta A v) of a pulled bend (thesis 4.6), and when it slips.
 
     v is the mean pull speed, separation difference over time, from 0.3 s to the end or to slipping.
-    The bend slips when the pull speed first exceeds twice the mean since 0.3 s (between frames, by linear
-    interpolation of their ratio), or when nothing resists the pull any more, whichever is earlier. When it slips
-    before 0.3 s, or the history is no longer than that, v is the mean from the start.
+    The bend slips when the pull speed first exceeds twice the mean since 0.3 s (between frames, by
+    linear interpolation of their ratio), or when nothing resists the pull any more, whichever is earlier.
+    When it slips before 0.3 s, or the history is no longer than that, v is the mean from the start.
 
     Parameters
     ----------
