@@ -58,25 +58,25 @@ def near_points(mid, cutoff):
     total = 0
     for e in range(n):
         x, y, z = mid[e, 0], mid[e, 1], mid[e, 2]
-        for shift in range(27):
-            i = cell[e, 0] + shift // 9 - 1
-            j = cell[e, 1] + shift // 3 % 3 - 1
-            k = cell[e, 2] + shift % 3 - 1
-            f = head[_bucket(i, j, k, mask)]
-            while f >= 0:
-                if f > e and cell[f, 0] == i and cell[f, 1] == j and cell[f, 2] == k:
-                    dx = mid[f, 0] - x
-                    dy = mid[f, 1] - y
-                    dz = mid[f, 2] - z
-                    if dx * dx + dy * dy + dz * dz < reach:
-                        if total == pairs.shape[0]:
-                            grown = np.empty((2 * total, 2), np.int64)
-                            grown[:total] = pairs
-                            pairs = grown
-                        pairs[total, 0] = e
-                        pairs[total, 1] = f
-                        total += 1
-                f = following[f]
+        ci, cj, ck = cell[e, 0], cell[e, 1], cell[e, 2]
+        if total + n > pairs.shape[0]:
+            grown = np.empty((2 * (total + n), 2), np.int64)
+            grown[:total] = pairs[:total]
+            pairs = grown
+        for i in range(ci - 1, ci + 2):
+            for j in range(cj - 1, cj + 2):
+                for k in range(ck - 1, ck + 2):
+                    f = head[_bucket(i, j, k, mask)]
+                    while f >= 0:
+                        if f > e and cell[f, 0] == i and cell[f, 1] == j and cell[f, 2] == k:
+                            dx = mid[f, 0] - x
+                            dy = mid[f, 1] - y
+                            dz = mid[f, 2] - z
+                            if dx * dx + dy * dy + dz * dz < reach:
+                                pairs[total, 0] = e
+                                pairs[total, 1] = f
+                                total += 1
+                        f = following[f]
     return pairs[:total]
 
 
