@@ -272,7 +272,10 @@ def test_a_mirror_image_moves_as_the_mirror_image():
 
 
 def test_two_ropes_pulled_apart_have_slipped():
-    """Once nothing holds the pulled strand the run says SLIPPED and keeps the time."""
+    """Once nothing holds the pulled strand the run says SLIPPED and keeps the time.
+
+    The last two contacts are mirror images of each other and open at one time.
+    """
     h = 0.1
     left, right = straight(21, 2.0), straight(21, 2.0, 0, (1.0, 1.9 * h, 0))
     a = assemble([left, right])
@@ -280,8 +283,34 @@ def test_two_ropes_pulled_apart_have_slipped():
     motion = Motion(a, toy_model(h), bc, initial_state(a, [left, right]))
     assert motion.advance(1e3) is Outcome.SLIPPED
     assert 0 < motion.time < 1e3
-    assert len(motion.contact_pairs()) <= 1
+    assert len(motion.contact_pairs()) <= 2
     assert motion.compression() < 1e-6 * motion.model.EA
+
+
+def spoilt(record):
+    """The record with all its arrays filled with NaN, the largest integer or True."""
+    fill = {"f": np.nan, "i": np.iinfo(np.int64).max, "b": True}
+    for part in record:
+        if isinstance(part, np.ndarray):
+            part[...] = fill[part.dtype.kind]
+        else:
+            spoilt(part)
+    return record
+
+
+def test_what_scratch_holds_does_not_matter():
+    """Nothing is read before it is written: scratch and freed memory full of NaN change no bit."""
+    clean, _ = tangled_motion(0)
+    clean.advance(TAU)
+    for _ in range(3):
+        junk = [np.full(size, np.nan) for size in range(1, 4000, 3)]
+        del junk
+        motion, _ = tangled_motion(0)
+        spoilt(motion._scratch)
+        motion.advance(TAU)
+        assert all(np.array_equal(p, q) for p, q in zip(motion.state, clean.state, strict=True))
+        assert motion.counts == clean.counts
+        assert motion.energies() == clean.energies()
 
 
 def test_pausing_counts_steps():
