@@ -16,7 +16,13 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from numba.core import config, event
+from numba.core import config as numba_config
+from numba.core import event
+
+# What Numba defines at run time, or leaves out of its annotations.
+config: Any = numba_config
+register: Any = event.register
+njit: Any = numba.njit
 
 PACKAGE = Path(__file__).parent
 KERNEL_SOURCES = ("_compile.py", "assembly.py", "rod", "motion")
@@ -62,7 +68,7 @@ class _QuickOptimisation(event.Listener):
         config.OPT = self._saved.pop()
 
 
-event.register("numba:compile", _QuickOptimisation())
+register("numba:compile", _QuickOptimisation())
 
 
 def compile_kernels(module_name: str, inline: tuple[str, ...] = ()) -> None:
@@ -78,7 +84,7 @@ def compile_kernels(module_name: str, inline: tuple[str, ...] = ()) -> None:
     try:
         for name, function in list(vars(module).items()):
             if inspect.isfunction(function) and function.__module__ == module_name:
-                compiled = numba.njit(
+                compiled = njit(
                     cache=CACHE is not None,
                     error_model="numpy",
                     nogil=True,

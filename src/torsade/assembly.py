@@ -12,12 +12,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from torsade.arrays import Bools, Floats, Ints
 from torsade.errors import TorsadeError
-
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 class Assembly(NamedTuple):
@@ -48,7 +45,7 @@ class Assembly(NamedTuple):
     node_start: Ints
     edge_start: Ints
     hinge_start: Ints
-    closed: NDArray[np.bool_]
+    closed: Bools
 
 
 class State(NamedTuple):

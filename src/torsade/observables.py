@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from torsade.assembly import Assembly, Floats, State
+from torsade.arrays import Floats
+from torsade.assembly import Assembly, State
 
 __all__ = [
     "SETTLED",

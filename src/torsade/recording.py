@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade import __version__, store
-from torsade.assembly import Assembly, Floats, State
+from torsade.arrays import Floats
+from torsade.assembly import Assembly, State
 from torsade.errors import TorsadeError
 from torsade.motion.overdamped import Checkpoint
 from torsade.results import Result

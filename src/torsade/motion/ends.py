@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from torsade.assembly import Assembly, Floats
+from torsade.arrays import Bools, Floats
+from torsade.assembly import Assembly
 from torsade.errors import TorsadeError
 
 
@@ -24,10 +24,10 @@ class Boundary(NamedTuple):
     torque : (n_edges,) external torque about the tangent [N m]
     """
 
-    held: NDArray[np.bool_]
+    held: Bools
     velocity: Floats
     force: Floats
-    turned: NDArray[np.bool_]
+    turned: Bools
     spin: Floats
     torque: Floats
 

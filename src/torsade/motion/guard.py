@@ -7,13 +7,15 @@ import math
 import numpy as np
 
 from torsade._compile import compile_kernels
+from torsade.arrays import Floats, Index, Ints
+from torsade.assembly import Assembly
 
 
-def _clamped(value):
+def _clamped(value: float) -> float:
     return min(1.0, max(0.0, value))
 
 
-def segment_distance(p0, p1, q0, q1):
+def segment_distance(p0: Floats, p1: Floats, q0: Floats, q1: Floats) -> float:
     """Smallest distance [m] between the segments p0 p1 and q0 q1, each point (3,)."""
     ux = p1[0] - p0[0]
     uy = p1[1] - p0[1]
@@ -43,7 +45,7 @@ def segment_distance(p0, p1, q0, q1):
     return math.sqrt(dx * dx + dy * dy + dz * dz)
 
 
-def largest_move(x0, x1):
+def largest_move(x0: Floats, x1: Floats) -> float:
     """Largest distance [m] any node has moved between x0 and x1 (n_nodes, 3)."""
     largest = 0.0
     for i in range(x0.shape[0]):
@@ -54,7 +56,7 @@ def largest_move(x0, x1):
     return math.sqrt(largest)
 
 
-def _relative_move(x0, x1, i, j):
+def _relative_move(x0: Floats, x1: Floats, i: Index, j: Index) -> float:
     """How far [m] node i moves as seen from node j, squared."""
     total = 0.0
     for c in range(3):
@@ -63,7 +65,7 @@ def _relative_move(x0, x1, i, j):
     return total
 
 
-def passes_through(x0, x1, i0, i1, j0, j1, move):
+def passes_through(x0: Floats, x1: Floats, i0: Index, i1: Index, j0: Index, j1: Index, move: float) -> bool:
     """Whether the segments i0 i1 and j0 j1 may cross while nodes move straight from x0 to x1.
 
     Conservative: the distance shrinks by at most move [m] over the whole step, so an interval of the
@@ -96,7 +98,7 @@ def passes_through(x0, x1, i0, i1, j0, j1, move):
             depth += 1
 
 
-def first_crossing(a, pairs, x0, x1, length, mid):
+def first_crossing(a: Assembly, pairs: Ints, x0: Floats, x1: Floats, length: Floats, mid: Floats) -> int:
     """First pair of edges that pass through each other as nodes move straight from x0 to x1, or -1.
 
     Edge lengths (n_edges,) and midpoints (n_edges, 3) at x0 bound the distance from below; only where

@@ -9,7 +9,8 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from torsade.assembly import Assembly, Floats, Ints, State
+from torsade.arrays import Floats, Ints
+from torsade.assembly import Assembly, State
 from torsade.errors import TorsadeError
 from torsade.material import Material, Section
 from torsade.motion import scheme, stepping

@@ -5,11 +5,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from torsade._compile import compile_kernels
+from torsade.arrays import Bools, Floats, Ints
+from torsade.assembly import Assembly
+from torsade.motion.ends import Boundary
 from torsade.rod.contact import (
     Contacts,
+    Model,
     add_contact_forces,
     add_drag_torques,
     contact_energy,
@@ -48,12 +51,12 @@ WORTH = 600.0
 class Near(NamedTuple):
     """What is near what: pairs of edges to guard (n_pairs, 2), contacts, room for the mobility matrix."""
 
-    guarded: NDArray[np.int64]
+    guarded: Ints
     contacts: Contacts
     skyline: Skyline
 
 
-def list_near(a, m, mid, length, skin):
+def list_near(a: Assembly, m: Model, mid: Floats, length: Floats, skin: float) -> Near:
     """A new Verlet list of edges with these midpoints (n_edges, 3) and lengths (n_edges,) [m].
 
     Guarded are all pairs that do not share a node, contacts may come from those not excluded.
@@ -70,22 +73,22 @@ def list_near(a, m, mid, length, skin):
 class Work(NamedTuple):
     """Scratch of one evaluation of the rates: per edge, per hinge and per node."""
 
-    length: NDArray[np.float64]
-    tangent: NDArray[np.float64]
-    mid: NDArray[np.float64]
-    torque: NDArray[np.float64]
-    drag_torque: NDArray[np.float64]
-    spin_weight: NDArray[np.float64]
-    m: NDArray[np.float64]
-    change: NDArray[np.float64]
-    force: NDArray[np.float64]
-    held: NDArray[np.bool_]
-    component: NDArray[np.int64]
+    length: Floats
+    tangent: Floats
+    mid: Floats
+    torque: Floats
+    drag_torque: Floats
+    spin_weight: Floats
+    m: Floats
+    change: Floats
+    force: Floats
+    held: Bools
+    component: Ints
     mobility: MobilityWork
     spin: SpinWork
 
 
-def rate_work(a):
+def rate_work(a: Assembly) -> Work:
     """Scratch for an assembly."""
     n = a.node_length.shape[0]
     n_edges = a.edges.shape[0]
@@ -107,7 +110,17 @@ def rate_work(a):
     )
 
 
-def forces(a, m, bc, x, theta, base_tangent, base_twist, contacts, w):
+def forces(
+    a: Assembly,
+    m: Model,
+    bc: Boundary,
+    x: Floats,
+    theta: Floats,
+    base_tangent: Floats,
+    base_twist: Floats,
+    contacts: Contacts,
+    w: Work,
+) -> None:
     """Total force and elastic plus external torque at nodes x and material angles theta, into w.
 
     base_tangent (n_edges, 3) and base_twist (n_hinges,) are the tangents and reference twists of the
@@ -131,7 +144,7 @@ def forces(a, m, bc, x, theta, base_tangent, base_twist, contacts, w):
     add_contact_forces(a, m, length, tangent, contacts, force)
 
 
-def _label_components(edge_fiber, contacts, component):
+def _label_components(edge_fiber: Ints, contacts: Contacts, component: Ints) -> None:
     """Label fibers that contacts join into bodies: component[f] is the smallest fiber of f's body."""
     n = component.shape[0]
     for f in range(n):
@@ -148,7 +161,7 @@ def _label_components(edge_fiber, contacts, component):
                     component[f] = min(p, q)
 
 
-def hold_bodies(a, bc, contacts, held, component):
+def hold_bodies(a: Assembly, bc: Boundary, contacts: Contacts, held: Bools, component: Ints) -> int:
     """Mark the held nodes, and ground one node of every body that nothing holds.
 
     Returns OK, or LOOSE when such a body carries a net external force: nothing resists it, so its
@@ -181,7 +194,7 @@ def hold_bodies(a, bc, contacts, held, component):
     return OK
 
 
-def _ground_guess(a, bc, v, held, component):
+def _ground_guess(a: Assembly, bc: Boundary, v: Floats, held: Bools, component: Ints) -> None:
     """Make the starting guess agree with held nodes; bodies that float move with their grounded node."""
     node_start, fixed, velocity = a.node_start, bc.held, bc.velocity
     for f in range(component.shape[0]):
@@ -200,7 +213,7 @@ def _ground_guess(a, bc, v, held, component):
                 v[i, 2] -= vz
 
 
-def _centre_floating(a, bc, v, held, component):
+def _centre_floating(a: Assembly, bc: Boundary, v: Floats, held: Bools, component: Ints) -> None:
     """Give every floating body zero mean velocity over its length (its centre stays)."""
     node_start, node_length, fixed = a.node_start, a.node_length, bc.held
     for b in range(component.shape[0]):
@@ -225,7 +238,21 @@ def _centre_floating(a, bc, v, held, component):
                         v[i, 2] -= sz / total
 
 
-def rates(a, m, bc, x, theta, base_tangent, base_twist, near, tolerance, v, omega, angular, w):
+def rates(
+    a: Assembly,
+    m: Model,
+    bc: Boundary,
+    x: Floats,
+    theta: Floats,
+    base_tangent: Floats,
+    base_twist: Floats,
+    near: Near,
+    tolerance: float,
+    v: Floats,
+    omega: Floats,
+    angular: Floats,
+    w: Work,
+) -> int:
     """Velocities v (n_nodes, 3), spins omega and rates of the material angles angular (n_edges,).
 
     v holds the starting guess. The material angle is measured from a director transported straight
@@ -254,7 +281,9 @@ def rates(a, m, bc, x, theta, base_tangent, base_twist, near, tolerance, v, omeg
     return OK
 
 
-def _material_rate(edges, t0, t, length, v, omega, angular):
+def _material_rate(
+    edges: Ints, t0: Floats, t: Floats, length: Floats, v: Floats, omega: Floats, angular: Floats
+) -> None:
     """Rate of the material angle: the spin, corrected for the turning of the reference director."""
     for e in range(omega.shape[0]):
         i = edges[e, 0]
@@ -268,7 +297,9 @@ def _material_rate(edges, t0, t, length, v, omega, angular):
         angular[e] = omega[e] + triple / (length[e] * (1.0 + cosine))
 
 
-def powers(a, m, bc, v, omega, contacts, w):
+def powers(
+    a: Assembly, m: Model, bc: Boundary, v: Floats, omega: Floats, contacts: Contacts, w: Work
+) -> tuple[float, float]:
     """External power and dissipated power [W] at the rates just computed.
 
     External power is that of forces, torques and held ends. Dissipation is v . M v, the damping of spin
@@ -303,7 +334,7 @@ def powers(a, m, bc, v, omega, contacts, w):
     return external, dissipated
 
 
-def energies(a, m, contacts, w, out):
+def energies(a: Assembly, m: Model, contacts: Contacts, w: Work, out: Floats) -> None:
     """Stretch, bend, twist and contact energy [J] into out (4,), at the forces just computed."""
     out[0] = stretch_energy(a, m.EA, w.length)
     out[1] = bend_energy(a, m.B, m.bend_present, w.length, w.tangent)

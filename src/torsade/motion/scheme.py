@@ -11,10 +11,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from torsade._compile import compile_kernels
-from torsade.motion.rates import OK, Work, rate_work, rates
+from torsade.arrays import Floats, Index
+from torsade.assembly import Assembly, State
+from torsade.motion.ends import Boundary
+from torsade.motion.rates import OK, Near, Work, rate_work, rates
+from torsade.rod.contact import Model
 
 MAX_STAGES = 40
 
@@ -50,27 +53,27 @@ class Stages(NamedTuple):
     of evaluations it took.
     """
 
-    x: NDArray[np.float64]
-    theta: NDArray[np.float64]
-    x1: NDArray[np.float64]
-    theta1: NDArray[np.float64]
-    x2: NDArray[np.float64]
-    theta2: NDArray[np.float64]
-    v0: NDArray[np.float64]
-    angular0: NDArray[np.float64]
-    v: NDArray[np.float64]
-    angular: NDArray[np.float64]
-    omega: NDArray[np.float64]
-    tangent: NDArray[np.float64]
-    length: NDArray[np.float64]
-    mid: NDArray[np.float64]
-    listed: NDArray[np.float64]
-    table: NDArray[np.float64]
-    estimate: NDArray[np.float64]
+    x: Floats
+    theta: Floats
+    x1: Floats
+    theta1: Floats
+    x2: Floats
+    theta2: Floats
+    v0: Floats
+    angular0: Floats
+    v: Floats
+    angular: Floats
+    omega: Floats
+    tangent: Floats
+    length: Floats
+    mid: Floats
+    listed: Floats
+    table: Floats
+    estimate: Floats
     work: Work
 
 
-def stage_work(a):
+def stage_work(a: Assembly) -> Stages:
     """Scratch of a run."""
     n = a.node_length.shape[0]
     n_edges = a.edges.shape[0]
@@ -96,20 +99,20 @@ def stage_work(a):
     )
 
 
-def copy(source, out):
+def copy(source: Floats, out: Floats) -> None:
     """out = source, arrays (n, 3)."""
     for i in range(out.shape[0]):
         for c in range(3):
             out[i, c] = source[i, c]
 
 
-def copy_flat(source, out):
+def copy_flat(source: Floats, out: Floats) -> None:
     """out = source, arrays (n,)."""
     for i in range(out.shape[0]):
         out[i] = source[i]
 
 
-def stages_for(dt, spectrum):
+def stages_for(dt: float, spectrum: float) -> tuple[int, float]:
     """Stages that a step dt [s] needs to be stable, and the step, shortened when that is too many."""
     stages = 1 + math.ceil(math.sqrt(1.0 + 1.54 * dt * spectrum))
     if stages > MAX_STAGES:
@@ -117,7 +120,7 @@ def stages_for(dt, spectrum):
     return max(2, stages), dt
 
 
-def chebyshev_table(stages, dt, table):
+def chebyshev_table(stages: Index, dt: float, table: Floats) -> None:
     """Weights of stage j in row j of table: of x_0, x_(j-1), x_(j-2), v_(j-1) and v_0.
 
     One stage is explicit Euler.
@@ -154,7 +157,7 @@ def chebyshev_table(stages, dt, table):
         t1, t0, d1, d0, e1, e0 = t, t1, d, d1, e, e1
 
 
-def _next_stage(weights, state, g):
+def _next_stage(weights: Floats, state: State, g: Stages) -> None:
     """Make (g.x, g.theta) the next stage, and the one before it (g.x1, g.theta1)."""
     c0, c1, c2, cv, cv0 = weights[0], weights[1], weights[2], weights[3], weights[4]
     x0, x, x1, x2, v, v0 = state.x, g.x, g.x1, g.x2, g.v, g.v0
@@ -170,7 +173,7 @@ def _next_stage(weights, state, g):
         p[e] = c0 * p0[e] + c1 * p1[e] + c2 * p2[e] + cv * r[e] + cv0 * r0[e]
 
 
-def _seed_mode(mode_x, mode_theta):
+def _seed_mode(mode_x: Floats, mode_theta: Floats) -> None:
     """A rough direction that holds every mode; the same for every run."""
     seed = np.uint64(88172645463325252)
     for i in range(mode_x.shape[0]):
@@ -183,7 +186,7 @@ def _seed_mode(mode_x, mode_theta):
         mode_theta[e] = 0.5 if e % 2 == 0 else -0.5
 
 
-def _size(mode_x, mode_theta):
+def _size(mode_x: Floats, mode_theta: Floats) -> float:
     """Euclidean norm of a mode: positions in radii, angles in radians."""
     total = 0.0
     for i in range(mode_x.shape[0]):
@@ -194,7 +197,7 @@ def _size(mode_x, mode_theta):
     return math.sqrt(total)
 
 
-def _perturb(state, radius, g):
+def _perturb(state: State, radius: float, g: Stages) -> float:
     """Make (g.x, g.theta) the state displaced along the mode in g.x2, g.theta2; returns how far."""
     factor = 1e-4 * math.sqrt(g.x.shape[0]) / _size(g.x2, g.theta2)
     x0, x, mode_x = state.x, g.x, g.x2
@@ -207,7 +210,7 @@ def _perturb(state, radius, g):
     return factor
 
 
-def _response(radius, factor, g):
+def _response(radius: float, factor: float, g: Stages) -> float:
     """Make the mode the change of the rates; returns its growth [1/s]."""
     mode_x, mode_theta = g.x2, g.theta2
     before = _size(mode_x, mode_theta)
@@ -220,7 +223,7 @@ def _response(radius, factor, g):
     return _size(mode_x, mode_theta) / (before * factor)
 
 
-def _prepare(job, state, g):
+def _prepare(job: Index, state: State, g: Stages) -> None:
     """Set up the running stages of a job."""
     if job == START:
         copy(state.v, g.v)
@@ -236,7 +239,18 @@ def _prepare(job, state, g):
         g.estimate[0] = 0.0
 
 
-def evaluate(job, a, m, bc, state, near, control, dt, stages, g):
+def evaluate(
+    job: Index,
+    a: Assembly,
+    m: Model,
+    bc: Boundary,
+    state: State,
+    near: Near,
+    control: Control,
+    dt: float,
+    stages: Index,
+    g: Stages,
+) -> int:
     """Evaluate the rates as often as a job needs, into g; returns their status.
 
     START: at the present state. STEP: at every stage of a step dt [s] (one stage: explicit Euler); the
@@ -270,7 +284,7 @@ def evaluate(job, a, m, bc, state, near, control, dt, stages, g):
     return OK
 
 
-def embedded_error(state, g, dt, radius):
+def embedded_error(state: State, g: Stages, dt: float, radius: float) -> float:
     """Largest embedded error estimate of positions and of material angles times radius [m]."""
     largest = 0.0
     for i in range(g.x.shape[0]):

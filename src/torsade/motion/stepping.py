@@ -4,23 +4,26 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
-
 from torsade._compile import compile_kernels
+from torsade.arrays import Floats, Index, Ints
+from torsade.assembly import Assembly, State
+from torsade.motion.ends import Boundary
 from torsade.motion.guard import first_crossing, largest_move
-from torsade.motion.rates import LOOSE, OK, list_near, powers
+from torsade.motion.rates import LOOSE, OK, Near, list_near, powers
 from torsade.motion.scheme import (
     ONE_STAGE,
     SPECTRUM,
     START,
     STEP,
+    Control,
+    Stages,
     copy,
     copy_flat,
     embedded_error,
     evaluate,
     stages_for,
 )
+from torsade.rod.contact import Model
 from torsade.rod.kinematics import edge_geometry, reference_twist, transport_directors
 from torsade.rod.neighbours import edge_midpoints, neighbour_pairs
 
@@ -42,12 +45,12 @@ class Clock(NamedTuple):
     spectral radius was estimated. culprit (2,): the edges that stopped the run.
     """
 
-    time: NDArray[np.float64]
-    count: NDArray[np.int64]
-    culprit: NDArray[np.int64]
+    time: Floats
+    count: Ints  # type: ignore[assignment]  # hides tuple.count
+    culprit: Ints
 
 
-def _commit(a, state, g):
+def _commit(a: Assembly, state: State, g: Stages) -> None:
     """Accept g.x, g.theta: carry the directors along and unwrap the reference twist."""
     transport_directors(state.director, g.tangent, g.work.tangent)
     copy_flat(g.work.change, state.reference_twist)
@@ -60,7 +63,7 @@ def _commit(a, state, g):
     _take_rates(state, g)
 
 
-def _take_rates(state, g):
+def _take_rates(state: State, g: Stages) -> None:
     """The rates just found are those at the start of the next step; at a base tangent they are spins."""
     copy(g.v, state.v)
     copy_flat(g.omega, state.omega)
@@ -68,7 +71,7 @@ def _take_rates(state, g):
     copy_flat(g.omega, g.angular0)
 
 
-def _list_near(a, m, control, state, g, clock):
+def _list_near(a: Assembly, m: Model, control: Control, state: State, g: Stages, clock: Clock) -> Near:
     """A new Verlet list around the present positions."""
     copy(state.x, g.listed)
     edge_midpoints(state.x, a.edges, g.mid)
@@ -76,7 +79,7 @@ def _list_near(a, m, control, state, g, clock):
     return list_near(a, m, g.mid, g.length, control.skin)
 
 
-def _take_spectrum(g, clock):
+def _take_spectrum(g: Stages, clock: Clock) -> None:
     """Note the spectral radius just estimated, and choose a first step from it."""
     clock.count[2] += int(g.estimate[1])
     clock.time[4] = max(1.1 * g.estimate[0], 1e-300)
@@ -85,7 +88,7 @@ def _take_spectrum(g, clock):
         clock.time[1] = 1.0 / clock.time[4]
 
 
-def _next_step(control, clock, until):
+def _next_step(control: Control, clock: Clock, until: float) -> tuple[float, bool]:
     """The step to try [s], and whether it ends at the time until."""
     remaining = until - clock.time[0]
     dt = control.fixed_step if control.fixed_step > 0.0 else clock.time[1]
@@ -96,7 +99,9 @@ def _next_step(control, clock, until):
     return dt, False
 
 
-def _crossing(a, m, control, state, near, g, move):
+def _crossing(
+    a: Assembly, m: Model, control: Control, state: State, near: Near, g: Stages, move: float
+) -> tuple[Index, Index]:
     """Edges that would pass through each other in the step to g.x, or (-1, -1)."""
     pairs = near.guarded
     if move > control.move:
@@ -108,13 +113,23 @@ def _crossing(a, m, control, state, near, g, move):
     return (pairs[k, 0], pairs[k, 1]) if k >= 0 else (-1, -1)
 
 
-def _try_step(a, m, bc, state, near, control, dt, g, clock):
+def _try_step(
+    a: Assembly,
+    m: Model,
+    bc: Boundary,
+    state: State,
+    near: Near,
+    control: Control,
+    dt: float,
+    g: Stages,
+    clock: Clock,
+) -> tuple[float, float, int]:
     """Take a step dt [s] into g; returns the step taken, its error over the tolerance and a verdict.
 
     A verdict of REACHED accepts the step; SLIPPED, CROSSING, STUCK and UNSOLVABLE refuse it.
     """
     ratio = 0.0
-    stages = ONE_STAGE
+    stages: Index = ONE_STAGE
     if control.fixed_step == 0.0:
         stages, dt = stages_for(dt, clock.time[4])
     status = evaluate(STEP, a, m, bc, state, near, control, dt, stages, g)
@@ -136,13 +151,23 @@ def _try_step(a, m, bc, state, near, control, dt, g, clock):
     return dt, ratio, REACHED
 
 
-def _adapt(tried, dt, ratio, clock):
+def _adapt(tried: float, dt: float, ratio: float, clock: Clock) -> None:
     """Choose the next step from the error of the last; a step cut short may not shorten it."""
     proposal = dt * min(4.0, max(0.2, 0.8 * max(ratio, 1e-9) ** (-1.0 / 3.0)))
     clock.time[1] = max(clock.time[1], proposal) if tried < clock.time[1] else proposal
 
 
-def advance(a, m, bc, control, state, clock, until, max_steps, g):
+def advance(
+    a: Assembly,
+    m: Model,
+    bc: Boundary,
+    control: Control,
+    state: State,
+    clock: Clock,
+    until: float,
+    max_steps: int,
+    g: Stages,
+) -> int:
     """Advance state (in place) to the time until [s] in at most max_steps steps; returns why it stopped.
 
     REACHED, PAUSED (max_steps taken), SLIPPED (a pulled body that nothing holds any more), CROSSING

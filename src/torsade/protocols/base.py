@@ -23,7 +23,8 @@ from torsade.material import preset as material_preset
 from torsade.units import Dimension, Length, Number, Pressure, Time, Viscosity
 
 if TYPE_CHECKING:
-    from torsade.assembly import Assembly, Floats, State
+    from torsade.arrays import Floats
+    from torsade.assembly import Assembly, State
     from torsade.centerline import Centerline
     from torsade.motion.ends import Boundary
     from torsade.motion.overdamped import Laws, Stepping

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from torsade import _compile, observables
-from torsade.assembly import Assembly, Floats, State, assemble, initial_state
+from torsade.arrays import Floats
+from torsade.assembly import Assembly, State, assemble, initial_state
 from torsade.centerline import Centerline, check, read_csv
 from torsade.curve import resample
 from torsade.errors import TorsadeError

@@ -14,7 +14,8 @@ from torsade.protocols.base import Experiment, Positive, Spec
 from torsade.units import Force, Length
 
 if TYPE_CHECKING:
-    from torsade.assembly import Assembly, Floats, State
+    from torsade.arrays import Floats
+    from torsade.assembly import Assembly, State
     from torsade.centerline import Centerline
     from torsade.results import Result
 

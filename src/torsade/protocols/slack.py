@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from torsade.assembly import Assembly, Floats
+from torsade.arrays import Floats
+from torsade.assembly import Assembly
 
 __all__ = ["take_up_slack"]
 

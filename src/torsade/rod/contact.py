@@ -21,9 +21,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from torsade._compile import compile_kernels
+from torsade.arrays import Bools, Floats, Index, Ints
+from torsade.assembly import Assembly
 
 
 class Model(NamedTuple):
@@ -63,16 +64,16 @@ class Contacts(NamedTuple):
     mean velocity of the first two nodes to that of the last two.
     """
 
-    pairs: NDArray[np.int64]
-    edges: NDArray[np.int64]
-    direction: NDArray[np.float64]
-    distance: NDArray[np.float64]
-    drag_nodes: NDArray[np.int64]
-    drag_weight: NDArray[np.float64]
-    count: NDArray[np.int64]
+    pairs: Ints
+    edges: Ints
+    direction: Floats
+    distance: Floats
+    drag_nodes: Ints
+    drag_weight: Floats
+    count: Ints  # type: ignore[assignment]  # hides tuple.count
 
 
-def contacts_among(pairs):
+def contacts_among(pairs: Ints) -> Contacts:
     """Empty contacts with room for every pair of the Verlet list."""
     n = max(1, pairs.shape[0])
     return Contacts(
@@ -86,7 +87,7 @@ def contacts_among(pairs):
     )
 
 
-def find_contacts(m, mid, contacts):
+def find_contacts(m: Model, mid: Floats, contacts: Contacts) -> None:
     """Fill contacts.edges, direction, distance with the pairs nearer than the diameter."""
     pairs, edges, direction, distance = contacts.pairs, contacts.edges, contacts.direction, contacts.distance
     reach = m.diameter * m.diameter
@@ -111,15 +112,17 @@ def find_contacts(m, mid, contacts):
     contacts.count[0] = count
 
 
-def _area(projected, e, f, rest_length, length, tangent):
+def _area(projected: bool, e: Index, f: Index, rest_length: Floats, length: Floats, tangent: Floats) -> float:
     """Area A_ef [m^2] of the contact of edges e and f."""
     if projected:
         cosine = tangent[e, 0] * tangent[f, 0] + tangent[e, 1] * tangent[f, 1] + tangent[e, 2] * tangent[f, 2]
-        return length[e] * length[f] * abs(cosine)
-    return rest_length[e] * rest_length[f]
+        present: float = length[e] * length[f] * abs(cosine)
+        return present
+    rest: float = rest_length[e] * rest_length[f]
+    return rest
 
 
-def contact_energy(a, m, length, tangent, contacts):
+def contact_energy(a: Assembly, m: Model, length: Floats, tangent: Floats, contacts: Contacts) -> float:
     """E_c [J]."""
     rest_length, edges, distance = a.rest_length, contacts.edges, contacts.distance
     total = 0.0
@@ -130,13 +133,15 @@ def contact_energy(a, m, length, tangent, contacts):
     return total
 
 
-def contact_pressure(m, R):
+def contact_pressure(m: Model, R: float) -> float:
     """K V'(p) [Pa] at midpoint distance R [m]."""
     p = 1.0 - R / m.diameter
     return m.K * (p + 2.0 * m.p0_squared * p * p * p)
 
 
-def add_contact_forces(a, m, length, tangent, contacts, force):
+def add_contact_forces(
+    a: Assembly, m: Model, length: Floats, tangent: Floats, contacts: Contacts, force: Floats
+) -> None:
     """Add the force of every contact to force (n_nodes, 3) [N], half to each node of an edge."""
     nodes, rest_length = a.edges, a.rest_length
     edges, direction, distance = contacts.edges, contacts.direction, contacts.distance
@@ -157,7 +162,7 @@ def add_contact_forces(a, m, length, tangent, contacts, force):
             force[f1, c] += push
 
 
-def compression(a, m, length, tangent, contacts):
+def compression(a: Assembly, m: Model, length: Floats, tangent: Floats, contacts: Contacts) -> float:
     """Total compression force [N]: over every edge, the sum of the contact forces on it (Fig 4-1B)."""
     rest_length, edges, distance = a.rest_length, contacts.edges, contacts.distance
     total = 0.0
@@ -167,21 +172,23 @@ def compression(a, m, length, tangent, contacts):
     return total
 
 
-def _shift_back(e, fiber, edge_start, closed):
+def _shift_back(e: Index, fiber: Index, edge_start: Ints, closed: Bools) -> Index:
     """The edge that ends where edge e starts, or -1 at a free end."""
     if e > edge_start[fiber]:
         return e - 1
     return edge_start[fiber + 1] - 1 if closed[fiber] else -1
 
 
-def _shift_on(e, fiber, edge_start, closed):
+def _shift_on(e: Index, fiber: Index, edge_start: Ints, closed: Bools) -> Index:
     """The edge that starts where edge e ends, or -1 at a free end."""
     if e < edge_start[fiber + 1] - 1:
         return e + 1
     return edge_start[fiber] if closed[fiber] else -1
 
 
-def _find_node_pairs(a, m, x, length, mid, contacts):
+def _find_node_pairs(
+    a: Assembly, m: Model, x: Floats, length: Floats, mid: Floats, contacts: Contacts
+) -> None:
     """Node-pair drag: start nodes i, j couple when edges (i, j) or the edges before them touch.
 
     So do the end nodes of touching edges, which are the start nodes of the next ones; a coupling that
@@ -221,7 +228,7 @@ def _find_node_pairs(a, m, x, length, mid, contacts):
     contacts.count[1] = count
 
 
-def find_drag(a, m, x, length, mid, contacts):
+def find_drag(a: Assembly, m: Model, x: Floats, length: Floats, mid: Floats, contacts: Contacts) -> None:
     """Fill contacts.drag_nodes and drag_weight from the contacts found, each coupling once."""
     nodes, rest_length = a.edges, a.rest_length
     edges, distance = contacts.edges, contacts.distance
@@ -241,7 +248,9 @@ def find_drag(a, m, x, length, mid, contacts):
     contacts.count[1] = contacts.count[0]
 
 
-def add_drag_torques(a, m, v, tangent, contacts, torque, spin_weight):
+def add_drag_torques(
+    a: Assembly, m: Model, v: Floats, tangent: Floats, contacts: Contacts, torque: Floats, spin_weight: Floats
+) -> None:
     """Add the collision torque (n_edges,) [N m] that velocities v (n_nodes, 3) exert on each edge.
 
     An edge is dragged towards the spin (r x dv) . d_3 / R at which its surface would move with the other

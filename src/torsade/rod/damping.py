@@ -12,26 +12,28 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from torsade._compile import compile_kernels
-from torsade.rod.skyline import assemble_skyline, back_substitute, factorise
+from torsade.arrays import Bools, Floats, Index
+from torsade.assembly import Assembly
+from torsade.rod.contact import Contacts
+from torsade.rod.skyline import Skyline, assemble_skyline, back_substitute, factorise
 
 
 class MobilityWork(NamedTuple):
     """Scratch arrays of the mobility solve: diagonals and factors (n,), vectors (n_nodes, 3)."""
 
-    diagonal: NDArray[np.float64]
-    coupling: NDArray[np.float64]
-    inverse: NDArray[np.float64]
-    lower: NDArray[np.float64]
-    r: NDArray[np.float64]
-    z: NDArray[np.float64]
-    p: NDArray[np.float64]
-    q: NDArray[np.float64]
+    diagonal: Floats
+    coupling: Floats
+    inverse: Floats
+    lower: Floats
+    r: Floats
+    z: Floats
+    p: Floats
+    q: Floats
 
 
-def mobility_work(n_nodes, n_edges):
+def mobility_work(n_nodes: Index, n_edges: Index) -> MobilityWork:
     """Scratch arrays for n_nodes nodes and n_edges edges."""
     return MobilityWork(
         np.empty(n_nodes),
@@ -45,7 +47,7 @@ def mobility_work(n_nodes, n_edges):
     )
 
 
-def apply_drag(a, eta_A, contacts, v, out):
+def apply_drag(a: Assembly, eta_A: float, contacts: Contacts, v: Floats, out: Floats) -> None:
     """out = M v [N], without regard to fixed nodes; v, out (n_nodes, 3)."""
     edges, rest_length = a.edges, a.rest_length
     nodes, weight = contacts.drag_nodes, contacts.drag_weight
@@ -74,7 +76,7 @@ def apply_drag(a, eta_A, contacts, v, out):
             out[j1, c] -= f
 
 
-def _tridiagonal_part(a, eta_A, contacts, work):
+def _tridiagonal_part(a: Assembly, eta_A: float, contacts: Contacts, work: MobilityWork) -> None:
     """Diagonal of M and its coupling along each edge."""
     edges, rest_length = a.edges, a.rest_length
     nodes, weight, touching = contacts.drag_nodes, contacts.drag_weight, contacts.edges
@@ -103,7 +105,7 @@ def _tridiagonal_part(a, eta_A, contacts, work):
             coupling[touching[k, 1]] += w
 
 
-def _factorise(a, fixed, work):
+def _factorise(a: Assembly, fixed: Bools, work: MobilityWork) -> None:
     """L D L^T of the tridiagonal part, fiber by fiber; rows of fixed nodes are the identity."""
     node_start, edge_start = a.node_start, a.edge_start
     diagonal, coupling, inverse, lower = work.diagonal, work.coupling, work.inverse, work.lower
@@ -123,7 +125,7 @@ def _factorise(a, fixed, work):
                 inverse[i] = 1.0 / (diagonal[i] - m * c)
 
 
-def _precondition(a, work):
+def _precondition(a: Assembly, work: MobilityWork) -> None:
     """z = P^-1 r with the factors of the tridiagonal part."""
     node_start = a.node_start
     inverse, lower, r, z = work.inverse, work.lower, work.r, work.z
@@ -145,14 +147,24 @@ def _precondition(a, work):
                 z[i, c] = z[i, c] * s - m * z[i + 1, c]
 
 
-def _dot(a, b):
+def _dot(a: Floats, b: Floats) -> float:
     total = 0.0
     for i in range(a.shape[0]):
         total += a[i, 0] * b[i, 0] + a[i, 1] * b[i, 1] + a[i, 2] * b[i, 2]
     return total
 
 
-def solve_mobility(a, eta_A, contacts, sky, force, fixed, tolerance, v, work):
+def solve_mobility(
+    a: Assembly,
+    eta_A: float,
+    contacts: Contacts,
+    sky: Skyline,
+    force: Floats,
+    fixed: Bools,
+    tolerance: float,
+    v: Floats,
+    work: MobilityWork,
+) -> bool:
     """Solve M v = F for the nodes that are not fixed; v holds a guess, and what fixed nodes do.
 
     Solved directly within the envelope of the reordered matrix where that pays (see `skyline_for`),
@@ -184,7 +196,16 @@ def solve_mobility(a, eta_A, contacts, sky, force, fixed, tolerance, v, work):
     return True
 
 
-def _conjugate_gradients(a, eta_A, contacts, force, fixed, tolerance, v, work):
+def _conjugate_gradients(
+    a: Assembly,
+    eta_A: float,
+    contacts: Contacts,
+    force: Floats,
+    fixed: Bools,
+    tolerance: float,
+    v: Floats,
+    work: MobilityWork,
+) -> bool:
     """Solve M v = F from the guess v; False when 20 n + 100 iterations do not suffice.
 
     Stops when the error, in the norm of the dissipated power v . M v, is below tolerance relative to
@@ -228,18 +249,18 @@ def _conjugate_gradients(a, eta_A, contacts, force, fixed, tolerance, v, work):
 class SpinWork(NamedTuple):
     """Scratch arrays of the spin solve, each (n_edges,)."""
 
-    diagonal: NDArray[np.float64]
-    upper: NDArray[np.float64]
-    factor: NDArray[np.float64]
-    border: NDArray[np.float64]
+    diagonal: Floats
+    upper: Floats
+    factor: Floats
+    border: Floats
 
 
-def spin_work(n_edges):
+def spin_work(n_edges: Index) -> SpinWork:
     """Scratch arrays for n_edges edges."""
     return SpinWork(np.empty(n_edges), np.empty(n_edges), np.empty(n_edges), np.empty(n_edges))
 
 
-def _thomas(first, last, upper, factor, rhs):
+def _thomas(first: Index, last: Index, upper: Floats, factor: Floats, rhs: Floats) -> None:
     """Solve the symmetric tridiagonal system of edges first..last-1 in place, already factorised."""
     for e in range(first + 1, last):
         rhs[e] -= upper[e - 1] * factor[e - 1] * rhs[e - 1]
@@ -248,7 +269,17 @@ def _thomas(first, last, upper, factor, rhs):
         rhs[e] = (rhs[e] - upper[e] * rhs[e + 1]) * factor[e]
 
 
-def solve_spin(a, eta_J, tangent, torque, spin_weight, fixed, prescribed, omega, work):
+def solve_spin(
+    a: Assembly,
+    eta_J: float,
+    tangent: Floats,
+    torque: Floats,
+    spin_weight: Floats,
+    fixed: Bools,
+    prescribed: Floats,
+    omega: Floats,
+    work: SpinWork,
+) -> None:
     """Spins omega (n_edges,) [rad/s] that balance torque (n_edges,) [N m] by internal damping.
 
     On edge e: sum over its neighbours f of eta J (omega_e - omega_f t_e . t_f)/lbar, plus spin_weight_e
@@ -296,7 +327,16 @@ def solve_spin(a, eta_J, tangent, torque, spin_weight, fixed, prescribed, omega,
         _solve_chain(first, last, seam, diagonal, upper, work.factor, work.border, omega)
 
 
-def _solve_chain(first, last, seam, diagonal, upper, factor, border, omega):
+def _solve_chain(
+    first: Index,
+    last: Index,
+    seam: float,
+    diagonal: Floats,
+    upper: Floats,
+    factor: Floats,
+    border: Floats,
+    omega: Floats,
+) -> None:
     """Solve one fiber's system in place; seam couples its last edge to its first (0 if open)."""
     if last - first == 1:
         omega[first] = omega[first] / diagonal[first] if diagonal[first] > 0.0 else 0.0

@@ -16,15 +16,17 @@ from __future__ import annotations
 import math
 
 from torsade._compile import compile_kernels
+from torsade.arrays import Floats, Ints
+from torsade.assembly import Assembly
 
 
-def hinge_twist(theta, reference_twist, hinges, m):
+def hinge_twist(theta: Floats, reference_twist: Floats, hinges: Ints, m: Floats) -> None:
     """Twist angle m (n_hinges,) [rad] of every hinge from material angles and reference twist."""
     for k in range(hinges.shape[0]):
         m[k] = theta[hinges[k, 1]] - theta[hinges[k, 0]] + reference_twist[k]
 
 
-def stretch_energy(a, EA, length):
+def stretch_energy(a: Assembly, EA: float, length: Floats) -> float:
     """E_s [J] of edges of the given lengths (n_edges,) [m]."""
     total = 0.0
     for e in range(length.shape[0]):
@@ -33,12 +35,12 @@ def stretch_energy(a, EA, length):
     return total
 
 
-def _bend_length(rest, present, before, after):
+def _bend_length(rest: float, present: bool, before: float, after: float) -> float:
     """The length [m] over which a hinge bends: at rest, or the mean of its edges as long as they are."""
     return 0.5 * (before + after) if present else rest
 
 
-def bend_energy(a, B, present, length, tangent):
+def bend_energy(a: Assembly, B: float, present: bool, length: Floats, tangent: Floats) -> float:
     """E_b [J]; |kb|^2 = 4 (1 - c)/(1 + c) with c = t_a . t_b, without cancellation."""
     hinges, hinge_length = a.hinges, a.hinge_length
     total = 0.0
@@ -54,7 +56,7 @@ def bend_energy(a, B, present, length, tangent):
     return total
 
 
-def twist_energy(a, C, m):
+def twist_energy(a: Assembly, C: float, m: Floats) -> float:
     """E_t [J] of hinge twists m (n_hinges,) [rad]."""
     total = 0.0
     for k in range(m.shape[0]):
@@ -62,7 +64,18 @@ def twist_energy(a, C, m):
     return total
 
 
-def add_elastic_forces(a, EA, B, C, present, length, tangent, m, force, torque):
+def add_elastic_forces(
+    a: Assembly,
+    EA: float,
+    B: float,
+    C: float,
+    present: bool,
+    length: Floats,
+    tangent: Floats,
+    m: Floats,
+    force: Floats,
+    torque: Floats,
+) -> None:
     """Add -dE/dx to force (n_nodes, 3) [N] and -dE/dtheta to torque (n_edges,) [N m].
 
     Positions vary at fixed material angle about time-parallel directors, so a hinge's twist changes
@@ -115,7 +128,7 @@ def add_elastic_forces(a, EA, B, C, present, length, tangent, m, force, torque):
         force[n, 2] -= fbz
 
 
-def hinge_curvature(a, tangent, kappa):
+def hinge_curvature(a: Assembly, tangent: Floats, kappa: Floats) -> None:
     """Curvature kappa = 2 tan(phi/2)/lbar (n_hinges,) [1/m] with respect to rest arclength."""
     for k in range(a.hinges.shape[0]):
         p = tangent[a.hinges[k, 0]]

@@ -12,9 +12,10 @@ import math
 import numpy as np
 
 from torsade._compile import compile_kernels
+from torsade.arrays import Floats, Index, Ints
 
 
-def edge_geometry(x, edges, length, tangent):
+def edge_geometry(x: Floats, edges: Ints, length: Floats, tangent: Floats) -> None:
     """Length [m] (n_edges,) and unit tangent (n_edges, 3) of every edge of nodes x (n_nodes, 3)."""
     for e in range(edges.shape[0]):
         i = edges[e, 0]
@@ -30,7 +31,7 @@ def edge_geometry(x, edges, length, tangent):
         tangent[e, 2] = dz * s
 
 
-def _half_solid_angle(p, i, q, j, r, k):
+def _half_solid_angle(p: Floats, i: Index, q: Floats, j: Index, r: Floats, k: Index) -> tuple[float, float]:
     """Numerator and denominator of tan(Omega/2) of the spherical triangle of unit vectors p[i], q[j], r[k].
 
     Van Oosterom and Strackee (1983): tan(Omega/2) = a.(b x c) / (1 + a.b + b.c + c.a).
@@ -45,7 +46,7 @@ def _half_solid_angle(p, i, q, j, r, k):
     return numerator, 1.0 + ab + bc + ca
 
 
-def small_atan(y, x):
+def small_atan(y: float, x: float) -> float:
     """atan2(y, x); a series where |y/x| is so small that it is exact to round-off."""
     if abs(y) < 0.02 * x:
         q = y / x
@@ -54,7 +55,7 @@ def small_atan(y, x):
     return math.atan2(y, x)
 
 
-def reference_twist_change(tangent_0, tangent, hinges, change):
+def reference_twist_change(tangent_0: Floats, tangent: Floats, hinges: Ints, change: Floats) -> None:
     """Exact change of every hinge's reference twist as tangents move from tangent_0 to tangent.
 
     With both directors parallel transported in time, the change is the area on the unit sphere enclosed
@@ -68,7 +69,7 @@ def reference_twist_change(tangent_0, tangent, hinges, change):
         change[k] = 2.0 * small_atan(x1 * y2 + y1 * x2, x1 * x2 - y1 * y2)
 
 
-def transport(u, a, b, out):
+def transport(u: Floats, a: Floats, b: Floats, out: Floats) -> None:
     """Parallel transport of the vector u from the unit tangent a to the unit tangent b, into out.
 
     Rotation about a x b; renormalised against b so that round-off never accumulates.
@@ -91,13 +92,13 @@ def transport(u, a, b, out):
     out[2] = vz * s
 
 
-def transport_directors(director, tangent_0, tangent):
+def transport_directors(director: Floats, tangent_0: Floats, tangent: Floats) -> None:
     """Carry every reference director (n_edges, 3) from tangent_0 to tangent, in place."""
     for e in range(director.shape[0]):
         transport(director[e], tangent_0[e], tangent[e], director[e])
 
 
-def reference_twist(director, tangent, hinges, twist):
+def reference_twist(director: Floats, tangent: Floats, hinges: Ints, twist: Floats) -> None:
     """Reference twist [rad] of every hinge, unwrapped to the value nearest to the one in twist.
 
     director, tangent (n_edges, 3); twist (n_hinges,) holds the previous values and receives the new.

@@ -10,9 +10,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from torsade._compile import compile_kernels
+from torsade.arrays import Bools, Floats, Index, Ints
+from torsade.assembly import Assembly
+from torsade.rod.contact import Contacts
 
 
 class Skyline(NamedTuple):
@@ -23,16 +25,16 @@ class Skyline(NamedTuple):
     farther than worthwhile in sum leave values empty: then the system is solved iteratively.
     """
 
-    position: NDArray[np.int64]
-    first: NDArray[np.int64]
-    start: NDArray[np.int64]
-    values: NDArray[np.float64]
-    diagonal: NDArray[np.float64]
-    inverse: NDArray[np.float64]
-    y: NDArray[np.float64]
+    position: Ints
+    first: Ints
+    start: Ints
+    values: Floats
+    diagonal: Floats
+    inverse: Floats
+    y: Floats
 
 
-def _adjacency(a, pairs):
+def _adjacency(a: Assembly, pairs: Ints) -> tuple[Ints, Ints]:
     """Nodes coupled to each node by edges and by pairs of edges: (offsets, neighbours), repeats allowed."""
     n = a.node_length.shape[0]
     offset = np.zeros(n + 1, np.int64)
@@ -66,7 +68,9 @@ def _adjacency(a, pairs):
     return offset, neighbour
 
 
-def _sweep(offset, neighbour, root, mark, stamp, queue, begin):
+def _sweep(
+    offset: Ints, neighbour: Ints, root: Index, mark: Ints, stamp: int, queue: Ints, begin: int
+) -> int:
     """Breadth-first sweep from root over unmarked nodes into queue[begin:], lower degrees first.
 
     Returns the end of the queue; the last node is farthest from the root.
@@ -96,7 +100,7 @@ def _sweep(offset, neighbour, root, mark, stamp, queue, begin):
     return end
 
 
-def reverse_cuthill_mckee(a, pairs):
+def reverse_cuthill_mckee(a: Assembly, pairs: Ints) -> Ints:
     """Row (n_nodes,) of every node such that coupled nodes are near each other."""
     n = a.node_length.shape[0]
     offset, neighbour = _adjacency(a, pairs)
@@ -123,7 +127,7 @@ def reverse_cuthill_mckee(a, pairs):
     return position
 
 
-def skyline_for(a, pairs, worth):
+def skyline_for(a: Assembly, pairs: Ints, worth: float) -> Skyline:
     """An empty skyline with room for every contact among pairs of edges.
 
     worth is the mean squared reach of rows up to which factorising pays; beyond, values are empty.
@@ -147,7 +151,7 @@ def skyline_for(a, pairs, worth):
     return Skyline(position, first, start, np.empty(size), np.empty(n), np.empty(n), np.empty((n, 3)))
 
 
-def _reset(position, edges, first):
+def _reset(position: Ints, edges: Ints, first: Ints) -> None:
     """Rows that reach as far as their own edges."""
     for i in range(first.shape[0]):
         first[i] = i
@@ -160,7 +164,7 @@ def _reset(position, edges, first):
             first[q] = min(first[q], p)
 
 
-def _reach(position, first, i0, i1, j0, j1):
+def _reach(position: Ints, first: Ints, i0: Index, i1: Index, j0: Index, j1: Index) -> None:
     """Let the rows of four coupled nodes reach the lowest of them."""
     p = position[i0]
     q = position[i1]
@@ -173,7 +177,9 @@ def _reach(position, first, i0, i1, j0, j1):
     first[s] = min(first[s], low)
 
 
-def _couple(i, j, w, fixed, position, first, start, values):
+def _couple(
+    i: Index, j: Index, w: float, fixed: Bools, position: Ints, first: Ints, start: Ints, values: Floats
+) -> None:
     """Add w to the entry of nodes i and j; couplings to fixed nodes are left out."""
     if not (fixed[i] or fixed[j]):
         p = position[i]
@@ -182,7 +188,7 @@ def _couple(i, j, w, fixed, position, first, start, values):
         values[start[row] + min(p, q) - first[row]] += w
 
 
-def assemble_skyline(a, eta_A, contacts, fixed, sky):
+def assemble_skyline(a: Assembly, eta_A: float, contacts: Contacts, fixed: Bools, sky: Skyline) -> None:
     """The mobility matrix of internal damping and collision drag; rows of fixed nodes are the identity."""
     position, first, start = sky.position, sky.first, sky.start
     values, diagonal = sky.values, sky.diagonal
@@ -231,7 +237,7 @@ def assemble_skyline(a, eta_A, contacts, fixed, sky):
             diagonal[position[i]] = 1.0
 
 
-def factorise(sky):
+def factorise(sky: Skyline) -> bool:
     """L D L^T in place (Jennings): row i of values becomes row i of L; False if not positive definite."""
     first, start, values = sky.first, sky.start, sky.values
     diagonal, inverse = sky.diagonal, sky.inverse
@@ -257,7 +263,7 @@ def factorise(sky):
     return True
 
 
-def back_substitute(sky, r, out):
+def back_substitute(sky: Skyline, r: Floats, out: Floats) -> None:
     """Solve for out (n_nodes, 3) from the right side r (n_nodes, 3), both in node order."""
     position, first, start = sky.position, sky.first, sky.start
     values, inverse, y = sky.values, sky.inverse, sky.y

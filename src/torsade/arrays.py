@@ -1,0 +1,13 @@
+"""Names for the kinds of arrays that kernels take."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+Index = int | np.int64
+"""A number of a node, edge, hinge or fiber, counted or read from an array."""
