@@ -1,0 +1,126 @@
+"""What README and docs promise: examples run, commands exist, links lead somewhere."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import torsade as ts
+from torsade.cli.app import OPTIONS
+from torsade.protocols import PROTOCOLS
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
+PICTURES_TO_COME = {ROOT / "docs" / "images" / "reef.png"}
+"""Drawn from a run, last of all."""
+
+
+def blocks(page: Path, language: str) -> list[str]:
+    """Code blocks of a page in a language."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", page.read_text(encoding="utf-8"), re.M | re.S)
+
+
+def commands() -> list[str]:
+    """Every torsade command that the pages show."""
+    lines = [line for page in PAGES for block in blocks(page, "console") for line in block.splitlines()]
+    return [line for line in lines if line.startswith("torsade ")]
+
+
+def anchor(heading: str) -> str:
+    """The anchor that a heading gets when it is rendered."""
+    return re.sub(r"[^\w\- ]", "", heading.strip().lower()).replace(" ", "-")
+
+
+def test_the_python_example_runs(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The README's example, for a hundredth of its duration."""
+    (example,) = blocks(ROOT / "README.md", "python")
+    assert example.count('"1 s"') == 1
+    monkeypatch.chdir(tmp_path)
+    exec(compile(example.replace('"1 s"', '"10 ms"'), "README.md", "exec"), {})
+    friction, separation, strain = capsys.readouterr().out.splitlines()
+    assert re.fullmatch(r"topological friction \d+\.\d", friction)
+    assert 1e-3 < float(separation.removesuffix(" m")) < 1e-1
+    assert 0 < float(strain) < 1
+
+
+def test_commands_are_found() -> None:
+    """The tests below have something to test."""
+    assert {line.split()[1] for line in commands()} == {"run"}
+    assert len(commands()) >= 5
+
+
+@pytest.mark.parametrize("line", commands())
+def test_a_command_shown_is_a_valid_specification(line: str) -> None:
+    _, run, protocol, *arguments = shlex.split(line)
+    assert run == "run"
+    fields = {}
+    while arguments:
+        option = arguments.pop(0)
+        name = option.removeprefix("--").replace("-", "_")
+        value = True if OPTIONS.get(name, (str, ""))[0] is bool else arguments.pop(0)
+        if name not in OPTIONS:
+            fields[name] = value
+    PROTOCOLS[protocol](**fields)
+
+
+@pytest.mark.parametrize("words", [(), ("demo",), ("run", "prison-escape"), ("run", "tighten")])
+def test_help_comes(words: tuple[str, ...]) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "torsade", *words, "--help"], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("Usage: torsade")
+
+
+def test_readme_has_two_commands_for_a_fresh_machine() -> None:
+    """What `.ci/run` executes."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    found = re.findall(r"^(?:python3 -m venv|\.venv/bin/pip) .*$", text, re.M)
+    assert len(found) == 2
+    assert found[0].endswith("torsade demo")
+    assert found[1].endswith("pytest")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    for link in re.findall(r"\]\(([^)\s]+)\)", text):
+        if link.startswith(("https://", "http://")):
+            continue
+        path, _, fragment = link.partition("#")
+        target = (page.parent / path).resolve() if path else page
+        assert target.exists() or target in PICTURES_TO_COME, link
+        if fragment:
+            headings = re.findall(r"^#+ (.*)$", target.read_text(encoding="utf-8"), re.M)
+            assert fragment in [anchor(h) for h in headings], link
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+def test_tests_named_exist(page: Path) -> None:
+    for path in re.findall(r"`(tests/[\w/]+\.py)`", page.read_text(encoding="utf-8")):
+        assert (ROOT / path).is_file(), path
+
+
+def test_architecture_names_every_module() -> None:
+    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    for entry in (ROOT / "src" / "torsade").iterdir():
+        if entry.name.startswith("__") or not (entry.is_dir() or entry.suffix == ".py"):
+            continue
+        assert f"`{entry.stem}`" in text or f"`{entry.stem}/`" in text, entry.name
+
+
+def test_the_citation_parses() -> None:
+    yaml = pytest.importorskip("yaml")
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert citation["cff-version"] == "1.2.0"
+    assert citation["version"] == ts.__version__
+    assert citation["authors"]
+    assert citation["title"]
+    assert citation["message"]
