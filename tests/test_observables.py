@@ -90,7 +90,7 @@ def test_slipping_ends_the_mean() -> None:
     s = np.cumsum(np.where(t <= 0.7 + 1e-9, 0.01, 0.05)) * 0.01
     found = observables.friction(t, s, **WHAT)
     ratio = 0.05 / ((0.4 * 0.01 + 0.01 * 0.05) / 0.41)  # at 0.71 s; 1 at 0.7 s
-    past = 0.01 / (ratio - 1)
+    past = 0.01 * 0.5 / (ratio - 1)
     assert found.slipped_at == pytest.approx(0.7 + past)
     assert found.speed == pytest.approx((0.4 * 0.01 + past * 0.05) / (0.4 + past))
 

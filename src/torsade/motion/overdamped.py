@@ -106,7 +106,7 @@ class Stepping:
     """
 
     fixed_step: float = 0.0
-    tolerance: float = 1e-3
+    tolerance: float = 1e-2
     solver_tolerance: float = 1e-5
     skin: float = 0.8
     move: float = 0.2

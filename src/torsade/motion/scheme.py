@@ -120,12 +120,21 @@ def stages_for(dt: float, spectrum: float) -> tuple[int, float]:
     return max(2, stages), dt
 
 
+def _set_row(table: Floats, j: int, c0: float, c1: float, c2: float, cv: float, cv0: float) -> None:
+    """Row j of a table (n, 5)."""
+    table[j, 0] = c0
+    table[j, 1] = c1
+    table[j, 2] = c2
+    table[j, 3] = cv
+    table[j, 4] = cv0
+
+
 def chebyshev_table(stages: Index, dt: float, table: Floats) -> None:
     """Weights of stage j in row j of table: of x_0, x_(j-1), x_(j-2), v_(j-1) and v_0.
 
     One stage is explicit Euler.
     """
-    table[1] = (1.0, 0.0, 0.0, dt, 0.0)
+    _set_row(table, 1, 1.0, 0.0, 0.0, dt, 0.0)
     if stages == 1:
         return
     w0 = 1.0 + 2.0 / (13.0 * stages * stages)
@@ -152,7 +161,7 @@ def chebyshev_table(stages: Index, dt: float, table: Floats) -> None:
         mu = 2.0 * b * w0 / b1
         nu = -b / b0
         step = 2.0 * b * w1 / b1 * dt
-        table[j] = (1.0 - mu - nu, mu, nu, step, -a1 * step)
+        _set_row(table, j, 1.0 - mu - nu, mu, nu, step, -a1 * step)
         b1, b0, a1 = b, b1, 1.0 - b * t
         t1, t0, d1, d0, e1, e0 = t, t1, d, d1, e, e1
 
@@ -304,4 +313,4 @@ def embedded_error(state: State, g: Stages, dt: float, radius: float) -> float:
     return largest
 
 
-compile_kernels(__name__, inline=("copy", "copy_flat"))
+compile_kernels(__name__, inline=("copy", "copy_flat", "_set_row"))

@@ -151,9 +151,9 @@ def _try_step(
     return dt, ratio, REACHED
 
 
-def _adapt(tried: float, dt: float, ratio: float, clock: Clock) -> None:
+def _adapt(tried: float, dt: float, ratio: float, growth: float, clock: Clock) -> None:
     """Choose the next step from the error of the last; a step cut short may not shorten it."""
-    proposal = dt * min(4.0, max(0.2, 0.8 * max(ratio, 1e-9) ** (-1.0 / 3.0)))
+    proposal = dt * min(growth, max(0.2, 0.8 * max(ratio, 1e-9) ** (-1.0 / 3.0)))
     clock.time[1] = max(clock.time[1], proposal) if tried < clock.time[1] else proposal
 
 
@@ -177,25 +177,31 @@ def advance(
     if until <= clock.time[0]:
         return REACHED
     near = _list_near(a, m, control, state, g, clock)
-    status = evaluate(START, a, m, bc, state, near, control, 0.0, ONE_STAGE, g)
-    clock.count[2] += 1
-    if status != OK:
-        return SLIPPED if status == LOOSE else UNSOLVABLE
-    _take_rates(state, g)
-    supplied, lost = powers(a, m, bc, g.v, g.omega, near.contacts, g.work)
+    begin = True
+    supplied = 0.0
+    lost = 0.0
     for _ in range(max_steps):
+        if begin:
+            status = evaluate(START, a, m, bc, state, near, control, 0.0, ONE_STAGE, g)
+            clock.count[2] += 1
+            if status != OK:
+                return SLIPPED if status == LOOSE else UNSOLVABLE
+            _take_rates(state, g)
+            supplied, lost = powers(a, m, bc, g.v, g.omega, near.contacts, g.work)
         if until - clock.time[0] <= 1e-12 * until:
             clock.time[0] = until
             return REACHED
         if control.fixed_step == 0.0 and (clock.count[4] >= STEPS_PER_SPECTRUM or clock.time[4] == 0.0):
             evaluate(SPECTRUM, a, m, bc, state, near, control, 0.0, ONE_STAGE, g)
             _take_spectrum(g, clock)
+        growth = 2.0
         while True:
             tried, last = _next_step(control, clock, until)
             dt, ratio, verdict = _try_step(a, m, bc, state, near, control, tried, g, clock)
             if verdict == REACHED:
                 break
             clock.count[1] += 1
+            growth = 1.0
             if control.fixed_step > 0.0 or dt < 1e-13 * until:
                 return verdict
             clock.time[1] = dt * max(0.1, 0.8 * ratio ** (-1.0 / 3.0))
@@ -203,14 +209,16 @@ def advance(
         clock.count[0] += 1
         clock.count[4] += 1
         if control.fixed_step == 0.0:
-            _adapt(tried, dt, ratio, clock)
+            _adapt(tried, dt, ratio, growth, clock)
         supplied_before = supplied
         lost_before = lost
         supplied, lost = powers(a, m, bc, g.v, g.omega, near.contacts, g.work)
         clock.time[2] += 0.5 * dt * (supplied_before + supplied)
         clock.time[3] += 0.5 * dt * (lost_before + lost)
         _commit(a, state, g)
-        if largest_move(g.listed, state.x) > 0.25 * control.skin:
+        moved = largest_move(g.listed, state.x)
+        begin = moved > 0.5 * control.skin  # a fixed step that outran the list: find contacts again
+        if moved > 0.25 * control.skin:
             near = _list_near(a, m, control, state, g, clock)
     return PAUSED
 

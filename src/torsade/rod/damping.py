@@ -81,7 +81,8 @@ def _tridiagonal_part(a: Assembly, eta_A: float, contacts: Contacts, work: Mobil
     edges, rest_length = a.edges, a.rest_length
     nodes, weight, touching = contacts.drag_nodes, contacts.drag_weight, contacts.edges
     diagonal, coupling = work.diagonal, work.coupling
-    diagonal[:] = 0.0
+    for i in range(diagonal.shape[0]):
+        diagonal[i] = 0.0
     for e in range(edges.shape[0]):
         w = eta_A / rest_length[e]
         diagonal[edges[e, 0]] += w
@@ -221,7 +222,9 @@ def _conjugate_gradients(
         for c in range(3):
             r[i, c] = 0.0 if fixed[i] else force[i, c] - q[i, c]
     _precondition(a, work)
-    p[:] = z
+    for i in range(n):
+        for c in range(3):
+            p[i, c] = z[i, c]
     rz = _dot(r, z)
     for _ in range(20 * n + 100):
         if rz <= tolerance * tolerance * max(abs(_dot(v, force)), guess_power) or rz < 1e-300:

@@ -11,9 +11,11 @@ import math
 import numpy as np
 
 from torsade._compile import compile_kernels
+from torsade.arrays import Floats, Index, Ints
+from torsade.assembly import Assembly
 
 
-def edge_midpoints(x, edges, mid):
+def edge_midpoints(x: Floats, edges: Ints, mid: Floats) -> None:
     """Midpoints (n_edges, 3) [m] of all edges."""
     for e in range(edges.shape[0]):
         i = edges[e, 0]
@@ -22,13 +24,14 @@ def edge_midpoints(x, edges, mid):
             mid[e, c] = 0.5 * (x[i, c] + x[j, c])
 
 
-def _bucket(i, j, k, mask):
+def _bucket(i: Index, j: Index, k: Index, mask: int) -> Index:
     return ((i * 73856093) ^ (j * 19349663) ^ (k * 83492791)) & mask
 
 
-def _hash_cells(mid, side, head, following, cell):
+def _hash_cells(mid: Floats, side: float, head: Ints, following: Ints, cell: Ints) -> None:
     """Linked lists of the points in every bucket; head (size,), following (n,), cell (n, 3)."""
-    head[:] = -1
+    for k in range(head.shape[0]):
+        head[k] = -1
     mask = head.shape[0] - 1
     for e in range(mid.shape[0] - 1, -1, -1):
         for c in range(3):
@@ -38,7 +41,7 @@ def _hash_cells(mid, side, head, following, cell):
         head[b] = e
 
 
-def near_points(mid, cutoff):
+def near_points(mid: Floats, cutoff: float) -> Ints:
     """All pairs e < f of points mid (n, 3) [m] nearer than cutoff [m].
 
     Linear in the number of points: they are hashed by their cell of side cutoff. Returns an int64 array
@@ -61,7 +64,9 @@ def near_points(mid, cutoff):
         ci, cj, ck = cell[e, 0], cell[e, 1], cell[e, 2]
         if total + n > pairs.shape[0]:
             grown = np.empty((2 * (total + n), 2), np.int64)
-            grown[:total] = pairs[:total]
+            for k in range(total):
+                grown[k, 0] = pairs[k, 0]
+                grown[k, 1] = pairs[k, 1]
             pairs = grown
         for i in range(ci - 1, ci + 2):
             for j in range(cj - 1, cj + 2):
@@ -80,12 +85,16 @@ def near_points(mid, cutoff):
     return pairs[:total]
 
 
-def neighbour_pairs(a, mid, cutoff, exclusion_edges, exclusion_length):
+def neighbour_pairs(
+    a: Assembly, mid: Floats, cutoff: float, exclusion_edges: int, exclusion_length: float
+) -> Ints:
     """All pairs e < f of edges with midpoints nearer than cutoff [m], excluded ones left out."""
     return without_excluded(a, near_points(mid, cutoff), mid, cutoff, exclusion_edges, exclusion_length)
 
 
-def without_excluded(a, pairs, mid, cutoff, exclusion_edges, exclusion_length):
+def without_excluded(
+    a: Assembly, pairs: Ints, mid: Floats, cutoff: float, exclusion_edges: int, exclusion_length: float
+) -> Ints:
     """The pairs (n_pairs, 2) with midpoints nearer than cutoff [m] that are not excluded."""
     edge_fiber, edge_start, closed = a.edge_fiber, a.edge_start, a.closed
     arclength, fiber_length = a.edge_arclength, a.fiber_length
