@@ -1,0 +1,1 @@
+"""torsade side by side with other programs."""

@@ -1,0 +1,98 @@
+"""Every benchmark runs, in its quick mode, and finds finite numbers; how fast is for the docs to say."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import math
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture
+def script(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Loads a benchmark by name."""
+    monkeypatch.syspath_prepend(str(ROOT))
+
+    def load(name: str) -> ModuleType:
+        return importlib.import_module(f"benchmarks.{name}")
+
+    return load
+
+
+def numbers(found: Any) -> list[float]:
+    """All numbers in nested lists and dictionaries."""
+    if isinstance(found, dict):
+        return [x for value in found.values() for x in numbers(value)]
+    if isinstance(found, list | tuple):
+        return [x for value in found for x in numbers(value)]
+    return [float(found)] if isinstance(found, int | float) else []
+
+
+@pytest.mark.parametrize("name", ["step", "kernels", "mobility", "start", "bends", "convergence"])
+def test_quick_mode_finds_finite_numbers(script: Any, name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    found = script(name).main(["--quick", "--json"])
+    printed = json.loads(capsys.readouterr().out)
+    assert numbers(printed) == numbers(json.loads(json.dumps(found)))
+    values = numbers(found)
+    assert values
+    assert all(math.isfinite(x) for x in values)
+
+
+def test_a_table_is_printed_without_json(script: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    script("step").main(["--quick"])
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].startswith("| nodes | contacts |")
+    assert lines[1].count("---") == lines[0].count("|") - 1
+
+
+def test_an_absent_peer_is_skipped_in_one_sentence(script: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    peer = script("peers.pyelastica_contact")
+    assert list(peer.main(["--quick"], installed=lambda: False)) == ["skipped"]
+    assert capsys.readouterr().out.strip() == peer.ABSENT
+
+
+def test_the_coil_compared_with_the_peer_touches_itself(script: Any) -> None:
+    peer = script("peers.pyelastica_contact")
+    seconds, contacts = peer.ours(peer.coil(100), steps=3, repeats=1)
+    assert seconds > 0
+    assert contacts > 20
+
+
+def test_the_solvers_compared_agree(script: Any) -> None:
+    row = script("mobility").compare(0.6, 0.002, at_least=1e-6, repeats=1)
+    assert row["contacts"] > 0
+    assert row["residual_of_direct"] < 1e-9
+    assert row["off_by_conjugate_gradients"] < 1e-2
+
+
+def test_absent_centerlines_are_left_out_in_one_sentence(script: Any, tmp_path: Path) -> None:
+    common = script("common")
+    (tmp_path / "reef.csv").touch()
+    found, note = common.data_files(str(tmp_path), ("reef", "thief", "granny"))
+    assert list(found) == ["reef"]
+    assert note == f"Not in {tmp_path}, so left out: thief, granny."
+    assert common.data_files(None, ("reef",))[0] == {}
+
+
+def test_the_convergence_table_replaces_the_one_before(script: Any, tmp_path: Path) -> None:
+    convergence = script("convergence")
+    page = tmp_path / "docs" / "convergence.md"
+    page.parent.mkdir()
+    page.write_text(f"# Title\n\n{convergence.BEGIN}\nold\n{convergence.END}\n\nReasons.\n", encoding="utf-8")
+    convergence.write("new", page)
+    text = page.read_text(encoding="utf-8")
+    assert text == f"# Title\n\n{convergence.BEGIN}\nnew\n{convergence.END}\n\nReasons.\n"
+    page.unlink()
+    convergence.write("new", page)
+    assert page.read_text(encoding="utf-8").count("new") == 1
+
+
+def test_the_exponent_is_the_slope_of_a_power_law(script: Any) -> None:
+    rows = [{"nodes": n, "us": 3.0 * n**1.25} for n in (100, 1000, 5000)]
+    assert script("step").exponent(rows, "us") == pytest.approx(1.25)
