@@ -67,9 +67,9 @@ _WAY_OUT = 6  # control points on the way out
 _STEPS_TO_AXIS = 4  # of a clamped or pulled end, from its leg to the line of pull
 _TAIL_TURN = tuple(math.radians(a) for a in (0, 20, 40, 60, 60, 60))  # of a free end, away from that line
 
-# What slips through the knot comes from the tails: at 15 N in nylon they last for a second. The granny
+# What slips through the knot comes from the tails: at 15 N in nylon a reef's last for a second. The granny
 # tangle lets its tails go faster than the reef's, and starts with longer ones.
-_TAIL = 4.0  # lengths of the free ends [leads]
+_TAIL = 2.5  # lengths of the free ends [leads]
 _LEAD = MappingProxyType({"reef": 16.0, "granny": 20.0})  # [radii]
 _LEAD_RANGE = (14.0, 1e4)  # [radii]
 _SPACING = 0.5  # [radii]
@@ -109,7 +109,8 @@ def bend(
         name: one of `BENDS`; upper and lower case are the same.
         radius: fiber radius h [m].
         lead: length from the knot to the clamped end and to the pulled end [m], 14 radii or more; the
-            free ends are four times as long. By default 16 radii for reef and thief, 20 for granny and grief.
+            free ends are two and a half times as long. By default 16 radii for reef and thief, 20 for
+            granny and grief.
         spacing: greatest distance between nodes along a strand [m], one radius or less; half a radius
             by default.
         pulled: one of `PULLS`, the clamped end first; by default "A1B1" for the reef and the granny,

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+import signal
+import threading
 import time
 from contextlib import suppress
 from pathlib import Path
@@ -51,6 +53,38 @@ COMMON = (
     "log_strain",
 )
 """What every protocol records."""
+
+
+class Patience:
+    """While it lasts, Ctrl-C waits for the next call of `end`, so that no step or write is cut in half.
+
+    A second Ctrl-C does not wait. Another handler than Python's own is left in place.
+    """
+
+    def __init__(self) -> None:
+        self._asked = False
+        self._installed = False
+
+    def __enter__(self) -> Patience:
+        ours = threading.current_thread() is threading.main_thread()
+        if ours and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+            signal.signal(signal.SIGINT, self._note)
+            self._installed = True
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._installed:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+    def _note(self, *_: object) -> None:
+        if self._asked:
+            raise KeyboardInterrupt
+        self._asked = True
+
+    def end(self) -> None:
+        """Raise KeyboardInterrupt if Ctrl-C was pressed."""
+        if self._asked:
+            raise KeyboardInterrupt
 
 
 class Interrupted(KeyboardInterrupt):
@@ -109,8 +143,9 @@ def drive(
         _warm_up(motion)
         if recording.checkpoint is not None:
             motion.restore(recording.checkpoint)
-        loose_at = _record(spec, experiment, motion, recording, tell)
-        return recording.finish(experiment.conclude(recording.histories(), loose_at))
+        with Patience() as patience:
+            loose_at = _record(spec, experiment, motion, recording, tell, patience)
+            return recording.finish(experiment.conclude(recording.histories(), loose_at))
     except KeyboardInterrupt:
         recording.stop("interrupted")
         raise Interrupted(motion.time, recording.done, recording.part) from None
@@ -170,13 +205,18 @@ def _compiled() -> bool:
 
 
 def _record(
-    spec: Spec, experiment: Experiment, motion: Motion, recording: Recording, tell: Progress
+    spec: Spec,
+    experiment: Experiment,
+    motion: Motion,
+    recording: Recording,
+    tell: Progress,
+    patience: Patience,
 ) -> float | None:
     """Move from frame to frame to the end; returns when nothing resisted the load any more [s], or None."""
     times = np.linspace(0.0, spec.duration, spec.frames + 1)
     began = time.perf_counter() - recording.wall
     for k in range(recording.done, len(times)):
-        outcome = Outcome.REACHED if k == 0 else _advance(experiment, motion, float(times[k]))
+        outcome = Outcome.REACHED if k == 0 else _advance(experiment, motion, float(times[k]), patience)
         tell(motion.time / spec.duration, f"t = {motion.time:.3f} s")
         slipped = outcome is Outcome.SLIPPED
         if not slipped or motion.time > times[k - 1]:
@@ -187,12 +227,13 @@ def _record(
     return None
 
 
-def _advance(experiment: Experiment, motion: Motion, until: float) -> Outcome:
+def _advance(experiment: Experiment, motion: Motion, until: float, patience: Patience) -> Outcome:
     """Advance to a time [s], taking up slack whenever nothing resists the load and something still can."""
     caught_at = -1
     outcome = Outcome.PAUSED
     while outcome is Outcome.PAUSED:
         outcome = motion.advance(until, STEPS_AT_ONCE)
+        patience.end()
         if outcome is Outcome.SLIPPED and motion.steps > caught_at and experiment.catch(motion.state):
             caught_at = motion.steps
             outcome = _settle(motion, until)

@@ -53,7 +53,7 @@ class PrisonEscape(Spec):
     lead: Annotated[Length, Positive] | None = Field(
         None,
         description="Length of fiber from a built-in knot to its clamped and to its pulled end; free ends "
-        "are four times as long.",
+        "are two and a half times as long.",
         examples=["5 mm"],
     )
     force: Annotated[Force, Positive] = Field(15.0, description="Force on the pulled end.")
