@@ -75,8 +75,9 @@ def page_table(found: dict[str, Any]) -> str:
         )  # fmt: skip
     nodes, tolerance = found["worst_nodes_doubled"], found["worst_tolerance_tightened"]
     return (
-        f"Spacing {found['spacing']:g} radii, tolerance {found['tolerance']:g}; changes when the number of nodes\n"
-        f"is doubled, and when the tolerance is tightened tenfold.\n\n{common.table(heads, body)}\n\n"
+        f"Spacing {found['spacing']:g} radii, tolerance {found['tolerance']:g}; changes when "
+        f"the number of nodes\nis doubled, and when the tolerance is tightened tenfold.\n\n"
+        f"{common.table(heads, body)}\n\n"
         f"Largest change of c_f or of a thief's slip time: {100 * nodes:.2f} % with twice the nodes\n"
         f"(allowed: {100 * SPACING_LIMIT:g} %), {100 * tolerance:.2f} % with a tenth of the tolerance "
         f"(allowed: {100 * TOLERANCE_LIMIT:g} %)."
