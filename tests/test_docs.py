@@ -16,7 +16,6 @@ from torsade.protocols import PROTOCOLS
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
-"""Drawn from a run, last of all."""
 
 
 def blocks(page: Path, language: str) -> list[str]:
