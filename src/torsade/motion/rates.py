@@ -44,7 +44,7 @@ OK = 0
 LOOSE = 1
 UNSOLVED = 2
 
-WORTH = 600.0
+WORTH = 5000.0
 """Mean squared reach of matrix rows up to which a direct solve is faster than an iterative one."""
 
 
