@@ -205,10 +205,10 @@ def test_unwritable_path_is_refused(tmp_path: Path) -> None:
 
 
 def test_sound_centerlines_pass() -> None:
-    check(Centerline((line(),)), H)
-    check(Centerline((ring(100),), (True,)), H)
-    check(Centerline((line(), line(start=(0.0, 2 * H, 0.0)))), H)
-    check(Centerline((line(41, 2 * H),)), H)  # edges as long as the diameter
+    side_by_side = Centerline((line(), line(start=(0.0, 2 * H, 0.0))))
+    coarse = Centerline((line(41, 2 * H),))  # edges as long as the diameter
+    for sound in (Centerline((line(),)), Centerline((ring(100),), (True,)), side_by_side, coarse):
+        assert check(sound, H) is None
 
 
 @pytest.mark.parametrize("radius", [0.0, -H, np.nan, np.inf])
