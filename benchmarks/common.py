@@ -17,10 +17,11 @@ import numpy as np
 from torsade.assembly import assemble, initial_state
 from torsade.errors import TorsadeError
 from torsade.material import preset
-from torsade.motion import ends, rates, scheme
+from torsade.motion import ends, near, rates, scheme
 from torsade.motion.overdamped import Motion, Outcome, Stepping, model
 from torsade.protocols.prison_escape import PrisonEscape
 from torsade.rod.contact import find_drag
+from torsade.rod.factor import Factor, no_factor
 from torsade.rod.kinematics import edge_geometry
 from torsade.rod.neighbours import edge_midpoints
 
@@ -120,7 +121,8 @@ def pulled_bend(knot: str, spacing: float, until: float) -> Motion:
 class Moment(NamedTuple):
     """One moment of a motion, ready for kernels: what is near, and scratch filled by an evaluation."""
 
-    near: rates.Near
+    near: near.Near
+    factor: Factor
     stages: scheme.Stages
     guess: np.ndarray
 
@@ -137,15 +139,15 @@ def capture(motion: Motion) -> Moment:
     state, g = motion.state, scheme.stage_work(a)
     edge_geometry(state.x, a.edges, g.length, g.tangent)
     edge_midpoints(state.x, a.edges, g.mid)
-    near = rates.list_near(a, m, g.mid, g.length, control.skin)
+    beside = near.find_near(a, m, control, g.mid, g.length)
     g.x[:], g.theta[:], g.v[:] = state.x, state.theta, state.v
-    rates.rates(
-        a, m, bc, g.x, g.theta, g.tangent, state.reference_twist, near, control.solver_tolerance,
-        g.v, g.omega, g.angular, g.work,
+    _, factor = rates.rates(
+        a, m, bc, g.x, g.theta, g.tangent, state.reference_twist, beside.contacts, no_factor(),
+        control.solver_tolerance, g.v, g.omega, g.angular, g.work,
     )  # fmt: skip
-    find_drag(a, m, state.x, g.work.length, g.work.mid, near.contacts)
+    find_drag(a, m, state.x, g.work.length, g.work.mid, beside.contacts)
     g.v0[:], g.angular0[:] = g.v, g.angular
-    return Moment(near, g, guess)
+    return Moment(beside, factor, g, guess)
 
 
 def loop(kernel: Any, returns_number: bool = False) -> Callable[..., None]:

@@ -15,20 +15,20 @@ import numpy as np
 
 from benchmarks import common
 from torsade.motion.guard import first_crossing, largest_move
+from torsade.motion.near import find_near, list_near
 from torsade.motion.overdamped import Motion
-from torsade.motion.rates import hold_bodies, list_near, powers, rates
-from torsade.motion.scheme import embedded_error
+from torsade.motion.rates import hold_bodies, powers
+from torsade.motion.scheme import ONE_STAGE, START, embedded_error, evaluate
 from torsade.rod.contact import add_contact_forces, add_drag_torques, find_contacts, find_drag
 from torsade.rod.damping import solve_spin
 from torsade.rod.elasticity import add_elastic_forces, hinge_twist
+from torsade.rod.factor import WORTH, assemble, factorise, pattern, substitute
 from torsade.rod.kinematics import (
+    carry_directors,
     edge_geometry,
-    reference_twist,
     reference_twist_change,
-    transport_directors,
 )
 from torsade.rod.neighbours import edge_midpoints
-from torsade.rod.skyline import assemble_skyline, back_substitute, factorise
 
 WHOLE, ASSEMBLED, FACTORISED = "evaluation", "matrix assembled", "matrix factorised"
 
@@ -37,21 +37,18 @@ NUMBERS = (embedded_error, first_crossing, largest_move)
 
 
 @numba.njit
-def _matrix(a, eta_A, contacts, fixed, sky):  # type: ignore[no-untyped-def]
+def _matrix(a, eta_A, contacts, fixed, factor):  # type: ignore[no-untyped-def]
     """Assemble and factorise: factors replace the matrix, so one cannot be repeated without the other."""
-    assemble_skyline(a, eta_A, contacts, fixed, sky)
-    return factorise(sky)
+    assemble(a, eta_A, contacts, fixed, factor)
+    return factorise(factor)
 
 
 def evaluation(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
     """Add the kernels of an evaluation, and the whole."""
     a, m, bc, state, control = motion.assembly, motion.model, motion.boundary, motion.state, motion.control
-    g, near, add = now.stages, now.near, timed.add
-    w, contacts, sky = g.work, near.contacts, near.skyline
-    add(
-        WHOLE, rates, a, m, bc, g.x, g.theta, g.tangent, state.reference_twist, near,
-        control.solver_tolerance, g.v, g.omega, g.angular, w,
-    )  # fmt: skip
+    g, contacts, factor, add = now.stages, now.near.contacts, now.factor, timed.add
+    w = g.work
+    add(WHOLE, evaluate, START, a, m, bc, state, contacts, factor, control, 0.0, ONE_STAGE, g)
     # Scratch for kernels that add to what they are given, so that what the others read stays as it is.
     force, torque, weight = np.zeros_like(w.force), np.zeros_like(w.torque), np.zeros_like(w.spin_weight)
     omega, v = g.omega.copy(), g.v.copy()
@@ -69,10 +66,10 @@ def evaluation(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
     add("bodies held", hold_bodies, a, bc, contacts, w.held, w.component)
     add("torques of drag", add_drag_torques, a, m, g.v, w.tangent, contacts, torque, weight)
     add("spin", solve_spin, a, m.eta_J, w.tangent, w.torque, w.spin_weight, bc.turned, bc.spin, omega, w.spin)
-    if sky.values.size:
-        add(ASSEMBLED, assemble_skyline, a, m.eta_A, contacts, w.held, sky)
-        add(FACTORISED, _matrix, a, m.eta_A, contacts, w.held, sky)
-        add("substituted", back_substitute, sky, w.force, v)
+    if factor.tape.size:
+        add(ASSEMBLED, assemble, a, m.eta_A, contacts, w.held, factor)
+        add(FACTORISED, _matrix, a, m.eta_A, contacts, w.held, factor)
+        add("substituted", substitute, factor, v)
 
 
 def step(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
@@ -81,14 +78,18 @@ def step(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
     g, near, add = now.stages, now.near, timed.add
     w = g.work
     moved = state.x + 1e-3 * control.radius * np.sin(np.arange(state.x.size)).reshape(-1, 3)
-    director, twist = state.director.copy(), state.reference_twist.copy()
+    director = state.director.copy()
     add("error estimate", embedded_error, state, g, 1e-4, control.radius)
     add("guard against crossing", largest_move, state.x, moved)
-    add("guard against crossing", first_crossing, a, near.guarded, state.x, moved, g.length, g.mid)
+    add(
+        "guard against crossing", first_crossing, a, near.apart, near.guarded, near.count[0], state.x,
+        moved, g.length, g.mid,
+    )  # fmt: skip
     add("work and dissipation", powers, a, m, bc, g.v, g.omega, near.contacts, w)
-    add("directors and twist", transport_directors, director, g.tangent, w.tangent)
-    add("directors and twist", reference_twist, director, w.tangent, a.hinges, twist)
-    add("neighbour list (when made)", list_near, a, m, g.mid, g.length, control.skin)
+    add("directors", carry_directors, a.edge_start, director, g.tangent, w.tangent)
+    add("pairs listed (when nodes have moved)", list_near, m, control, g.mid, g.length, near)
+    add("pairs found (when they have gone far)", find_near, a, m, control, g.mid, g.length)
+    add("pattern (when another pair touches)", pattern, a, near.contacts, g.mid, m.diameter, WORTH)
 
 
 class _Kernels:
@@ -145,8 +146,8 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
         "knot": given.knot,
         "nodes": len(motion.state.x),
         "contacts": now.contacts,
-        "pairs": len(now.near.contacts.pairs),
-        "guarded": len(now.near.guarded),
+        "pairs": int(now.near.contacts.count[2]),
+        "guarded": int(now.near.count[0]),
         "us_evaluation": 1e6 * whole,
         "share": {name: taken / whole for name, taken in inside.items()},
         "us_step": {name: 1e6 * taken for name, taken in beside.items()},

@@ -17,16 +17,15 @@ from scipy.sparse.csgraph import reverse_cuthill_mckee
 
 from benchmarks import common
 from torsade.motion.overdamped import Motion
-from torsade.motion.rates import WORTH
 from torsade.rod.damping import solve_mobility
-from torsade.rod.skyline import skyline_for
+from torsade.rod.factor import WORTH, pattern
 
 
 @numba.njit
-def _solve(times, a, eta_A, contacts, sky, force, fixed, tolerance, guess, v, work):  # type: ignore[no-untyped-def]
+def _solve(times, a, eta_A, contacts, factor, force, fixed, tolerance, guess, v, work):  # type: ignore[no-untyped-def]
     for _ in range(times):
         v[:] = guess
-        solve_mobility(a, eta_A, contacts, sky, force, fixed, tolerance, v, work)
+        solve_mobility(a, eta_A, contacts, factor, force, fixed, tolerance, v, work)
 
 
 def matrix(motion: Motion, now: common.Moment) -> sparse.csc_matrix:
@@ -61,17 +60,16 @@ def compare(spacing: float, until: float, at_least: float, repeats: int) -> dict
     now = common.capture(motion)
     a, m, w, contacts = motion.assembly, motion.model, now.stages.work, now.near.contacts
     force, held = w.force.copy(), w.held.copy()
-    direct = skyline_for(a, contacts.pairs, np.inf)
-    iterative = skyline_for(a, contacts.pairs, 0.0)
-    # Rows as the matrix of listed pairs has them: what the choice of a solver is made on.
-    reach = float(np.mean((np.arange(len(direct.first)) - direct.first) ** 2.0))
+    direct = pattern(a, contacts, w.mid, m.diameter, np.inf)
+    iterative = pattern(a, contacts, w.mid, m.diameter, 0.0)
+    operations = float(np.mean(np.diff(direct.start) ** 2.0))  # what the choice of a solver is made on
     zero, v = np.zeros_like(now.guess), np.zeros_like(now.guess)
     guess = np.where(held[:, None], 0.0, now.guess)
 
-    def ours(sky: Any, start: np.ndarray) -> float:
+    def ours(factor: Any, start: np.ndarray) -> float:
         def call(times: int) -> None:
             _solve(
-                times, a, m.eta_A, contacts, sky, force, held, motion.control.solver_tolerance, start, v,
+                times, a, m.eta_A, contacts, factor, force, held, motion.control.solver_tolerance, start, v,
                 w.mobility,
             )  # fmt: skip
 
@@ -94,7 +92,7 @@ def compare(spacing: float, until: float, at_least: float, repeats: int) -> dict
         "spacing": spacing,
         "nodes": len(a.node_length),
         "contacts": now.contacts,
-        "mean_squared_reach": reach,
+        "operations_per_node": operations,
         "residual_of_direct": float(residual),
         "off_by_conjugate_gradients": off,
         **taken,
@@ -119,10 +117,10 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     at_least, repeats = (1e-5, 1) if given.quick else (2e-2, 9)
     rows = [compare(s, 0.005 if given.quick or s < 0.25 else 0.3, at_least, repeats) for s in spacings]
     found: dict[str, Any] = {"rows": rows, "worth": WORTH, "worth_measured": _break_even(rows)}
-    heads = ("spacing [radii]", "nodes", "contacts", "mean squared reach", "direct [µs]", *SOLVERS[1:])
+    heads = ("spacing [radii]", "nodes", "contacts", "operations/node", "direct [µs]", *SOLVERS[1:])
     body = [
         [
-            row["spacing"], row["nodes"], row["contacts"], row["mean_squared_reach"], row["direct"],
+            row["spacing"], row["nodes"], row["contacts"], row["operations_per_node"], row["direct"],
             *(f"{row[name] / row['direct']:.1f} x" for name in SOLVERS[1:]),
         ]
         for row in rows
@@ -130,19 +128,19 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     measured = found["worth_measured"]
     tables = [
         common.table(heads, body),
-        f"The direct solve is used up to a mean squared reach of {WORTH:g}; "
-        + (f"it breaks even at about {measured:.0f}." if measured else "here it is faster at every reach."),
+        f"The direct solve is used up to {WORTH:g} operations per node; "
+        + (f"it breaks even at about {measured:.0f}." if measured else "here it is always faster."),
     ]
     return common.show(found, tables, given.json)
 
 
 def _break_even(rows: Sequence[dict[str, float]]) -> float | None:
-    """Mean squared reach at which conjugate gradients catch up, or None when they do not."""
-    by_reach = sorted(rows, key=lambda row: row["mean_squared_reach"])
-    for low, high in itertools.pairwise(by_reach):
+    """Operations per node at which conjugate gradients catch up, or None when they do not."""
+    by_work = sorted(rows, key=lambda row: row["operations_per_node"])
+    for low, high in itertools.pairwise(by_work):
         a, b = (np.log(row["conjugate gradients"] / row["direct"]) for row in (low, high))
         if a > 0 >= b:
-            x, y = (np.log(row["mean_squared_reach"]) for row in (low, high))
+            x, y = (np.log(row["operations_per_node"]) for row in (low, high))
             return float(np.exp(x + (y - x) * a / (a - b)))
     return None
 

@@ -53,13 +53,14 @@ def test_cache_goes_where_it_is_told(tmp_path, monkeypatch):
 def test_kernels_run_as_plain_python():
     """With NUMBA_DISABLE_JIT=1 the fast kernel tests pass uncompiled: nothing relies on the compiler."""
     tests = [
-        "rod/test_kinematics.py::test_directors_are_carried_in_place",
-        "rod/test_kinematics.py::test_two_ways_to_the_reference_twist",
+        "rod/test_kinematics.py::test_first_directors_are_carried_in_place",
+        "rod/test_kinematics.py::test_two_ways_to_the_directors",
         "rod/test_elasticity.py::test_forces_and_moments_balance",
         "rod/test_contact.py::test_drag_torques_are_the_law_written_out",
         "rod/test_contact.py::test_contact_forces_and_moments_sum_to_zero",
         "rod/test_damping.py::test_spins_solve_the_dense_system",
         "rod/test_damping.py::test_bodies_apart_float_each_on_its_own",
+        "rod/test_factor.py::test_pattern_is_that_of_the_factors",
         "rod/test_neighbours.py::test_cells_that_share_a_bucket",
         "motion/test_rates.py::test_pulled_straight_fiber_stretches_uniformly",
         "motion/test_stepping.py::test_times_are_reached_exactly",

@@ -43,7 +43,7 @@ def ours(x: np.ndarray, steps: int, repeats: int) -> tuple[float, int]:
         motion.advance(1.0, steps)
 
     taken = common.seconds(run, repeats) / steps
-    return taken, len(motion.contact_pairs())
+    return taken, len(motion.measure().contacts)
 
 
 def theirs(x: np.ndarray, steps: int, repeats: int) -> float:

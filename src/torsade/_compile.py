@@ -12,6 +12,8 @@ import hashlib
 import inspect
 import os
 import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -71,27 +73,72 @@ class _QuickOptimisation(event.Listener):
 register("numba:compile", _QuickOptimisation())
 
 
-def compile_kernels(module_name: str, inline: tuple[str, ...] = ()) -> None:
-    """Compile every function that the module defines, in place; those named are always inlined.
+class Kernel:
+    """A compiled function of a kernel module.
 
-    Private functions can be called from compiled code only: their wrappers would take long to compile.
-    Passing arrays to a small function that is not inlined costs more than what it does. With
-    ``NUMBA_DISABLE_JIT=1`` the functions stay plain Python and can be stepped through.
+    Other kernels call it directly, compiled without an entry for Python: entries that unpack many arrays
+    take as long to compile as the kernels. A call from Python compiles such an entry when it first comes.
     """
-    module = sys.modules[module_name]
+
+    def __init__(self, function: Callable[..., Any], **options: Any) -> None:
+        self.__doc__ = function.__doc__
+        self.__name__ = function.__name__
+        self.__module__ = function.__module__
+        self.py_func = function
+        self._options = options
+        with _caching("kernels"):
+            self._inner = njit(no_cpython_wrapper=True, **options)(function)
+        self.targetoptions = self._inner.targetoptions
+        self._entry: Callable[..., Any] | None = None
+
+    @property
+    def _numba_type_(self) -> Any:
+        """What the compiler sees."""
+        return self._inner._numba_type_
+
+    def __call__(self, *args: Any) -> Any:
+        if self._entry is None:
+            with _caching("entries"):
+                self._entry = njit(**self._options)(self.py_func)
+        return self._entry(*args)
+
+
+@contextmanager
+def _caching(folder: str) -> Iterator[None]:
+    """Let functions declared meanwhile be cached in a folder of the cache."""
     previous = config.CACHE_DIR
-    config.CACHE_DIR = str(CACHE) if CACHE else previous
+    config.CACHE_DIR = str(CACHE / folder) if CACHE else previous
     try:
-        for name, function in list(vars(module).items()):
-            if inspect.isfunction(function) and function.__module__ == module_name:
-                compiled = njit(
-                    cache=CACHE is not None,
-                    error_model="numpy",
-                    nogil=True,
-                    forceinline=name in inline,
-                    no_cfunc_wrapper=True,
-                    no_cpython_wrapper=name.startswith("_"),
-                )
-                setattr(module, name, compiled(function))
+        yield
     finally:
         config.CACHE_DIR = previous
+
+
+def compile_kernels(
+    module_name: str, inline: tuple[str, ...] = (), splice: tuple[str, ...] = (), plain: tuple[str, ...] = ()
+) -> None:
+    """Compile every function that the module defines, in place; those named plain stay as they are.
+
+    Functions named under inline become part of the machine code of their callers: passing arrays to a
+    small function costs more than what it does. Functions named under splice, called in one place only,
+    become part of their caller before compilation, which spares compiling all they call once more. With
+    ``NUMBA_DISABLE_JIT=1`` all functions stay plain Python and can be stepped through.
+    """
+    if config.DISABLE_JIT:
+        return
+    module = sys.modules[module_name]
+    for name, function in list(vars(module).items()):
+        own = inspect.isfunction(function) and function.__module__ == module_name
+        if own and name not in plain:
+            options = {
+                "cache": CACHE is not None,
+                "error_model": "numpy",
+                "nogil": True,
+                "no_cfunc_wrapper": True,
+                "fastmath": {"contract"},
+            }
+            if name in inline:
+                options["forceinline"] = True
+            if name in splice:
+                options["inline"] = "always"
+            setattr(module, name, Kernel(function, **options))

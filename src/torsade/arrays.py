@@ -11,3 +11,6 @@ Bools = NDArray[np.bool_]
 
 Index = int | np.int64
 """A number of a node, edge, hinge or fiber, counted or read from an array."""
+
+Slots = NDArray[np.uint32]
+"""Places in an array, counted from its start: compiled code need not ask whether one is negative."""

@@ -24,6 +24,7 @@ class Assembly(NamedTuple):
     ----------
     edges : (n_edges, 2) nodes at the start and the end of each edge
     hinges : (n_hinges, 3) edge before, edge after, node between
+    beside : (n_edges, 2) edge before and edge after each edge, -1 at a free end
     rest_length : (n_edges,) l [m]
     hinge_length : (n_hinges,) lbar, half the rest length of the two edges [m]
     node_length : (n_nodes,) Voronoi length lbar of each node [m]
@@ -36,6 +37,7 @@ class Assembly(NamedTuple):
 
     edges: Ints
     hinges: Ints
+    beside: Ints
     rest_length: Floats
     hinge_length: Floats
     node_length: Floats
@@ -95,11 +97,15 @@ def assemble(
     shift = [np.array([edge_start[f], edge_start[f], node_start[f]]) for f in range(len(parts))]
     hinges = np.concatenate([p[1] + s for p, s in zip(parts, shift, strict=True)])
     rest = np.concatenate(lengths)
+    beside = np.full((len(edges), 2), -1, dtype=np.int64)
+    beside[hinges[:, 1], 0] = hinges[:, 0]
+    beside[hinges[:, 0], 1] = hinges[:, 1]
     node_length = np.zeros(node_start[-1])
     np.add.at(node_length, edges.ravel(), np.repeat(0.5 * rest, 2))
     return Assembly(
         edges=edges,
         hinges=hinges,
+        beside=beside,
         rest_length=rest,
         hinge_length=0.5 * (rest[hinges[:, 0]] + rest[hinges[:, 1]]),
         node_length=node_length,

@@ -9,8 +9,6 @@ import pytest
 
 from rod.helpers import (
     Probe,
-    midpoints,
-    pairs_within,
     random_strand,
     straight,
     tangle,
@@ -20,7 +18,6 @@ from rod.helpers import (
 from torsade.assembly import assemble, initial_state
 from torsade.motion import ends
 from torsade.motion.overdamped import STANDARD
-from torsade.motion.rates import list_near
 from torsade.rod.kinematics import edge_geometry, transport
 
 
@@ -177,31 +174,3 @@ def test_ends_say_what_is_wrong():
         ends.turn(ends.free(a), a, 1, 0, 1.0)
     assert ends.end_node(a, 0, 1) == 4
     assert ends.end_edge(a, 0, 1) == 3
-
-
-@pytest.mark.parametrize("exclusion", [1, 10])
-@pytest.mark.parametrize("coarse", [1.0, 3.0])
-@pytest.mark.parametrize("seed", [0, 1])
-def test_guarded_are_all_pairs_that_may_meet(seed, coarse, exclusion):
-    """Pairs without a common node nearer than the longest edge or diameter, plus skin; contacts by exclusion.
-
-    A list made anew from the same positions is the same.
-    """
-    a, state, h = tangle(seed)
-    m = toy_model(h, exclusion_edges=exclusion)
-    length, skin, mid = coarse * a.rest_length, 0.8 * h, midpoints(a, state.x)
-    near = list_near(a, m, mid, length, skin)
-    reach = max(m.diameter, length.max()) + skin
-    expected = [
-        (e, f)
-        for e in range(len(mid))
-        for f in range(e + 1, len(mid))
-        if not set(a.edges[e]) & set(a.edges[f]) and np.linalg.norm(mid[e] - mid[f]) < reach
-    ]
-    assert sorted(map(tuple, near.guarded)) == expected
-    touching = pairs_within(a, state.x, m.diameter + skin, exclusion, m.exclusion_length)
-    assert sorted(map(tuple, near.contacts.pairs)) == sorted(map(tuple, touching))
-    assert len(near.skyline.values) > 0
-    again = list_near(a, m, mid, length, skin)
-    assert np.array_equal(again.guarded, near.guarded)
-    assert np.array_equal(again.skyline.position, near.skyline.position)

@@ -14,9 +14,9 @@ from torsade.motion.ends import Boundary, free
 from torsade.motion.overdamped import STANDARD, Laws, model
 from torsade.rod.contact import Model, add_drag_torques, contacts_among
 from torsade.rod.damping import apply_drag
+from torsade.rod.factor import WORTH, pattern
 from torsade.rod.kinematics import edge_geometry
 from torsade.rod.neighbours import edge_midpoints, neighbour_pairs
-from torsade.rod.skyline import skyline_for
 
 Floats = NDArray[np.float64]
 
@@ -124,7 +124,7 @@ class Probe:
         m: Model,
         state: State,
         bc: Boundary | None = None,
-        worth: float = rates_module.WORTH,
+        worth: float = WORTH,
     ) -> None:
         self.a, self.m, self.state, self.bc = a, m, state, bc or free(a)
         self.length, self.tangent = np.empty(len(a.edges)), np.empty((len(a.edges), 3))
@@ -132,7 +132,8 @@ class Probe:
         self.work = rates_module.rate_work(a)
         pairs = pairs_within(a, state.x, 3 * m.diameter, m.exclusion_edges, m.exclusion_length)
         self.contacts = contacts_among(pairs)
-        self.near = rates_module.Near(pairs, self.contacts, skyline_for(a, pairs, worth))
+        edge_midpoints(state.x, a.edges, self.work.mid)
+        self.factor = pattern(a, self.contacts, self.work.mid, 3 * m.diameter, worth)
 
     def evaluate(self, x: Floats, theta: Floats) -> None:
         rates_module.forces(
@@ -158,9 +159,9 @@ class Probe:
     def rates(self, x: Floats, theta: Floats, tolerance: float = 1e-12) -> tuple[Floats, Floats, Floats]:
         """Node velocities, spins about the tangent, and rates of the material angles."""
         v, omega, angular = np.zeros_like(x), np.empty_like(theta), np.empty_like(theta)
-        status = rates_module.rates(
+        status, _ = rates_module.rates(
             self.a, self.m, self.bc, x, theta, self.tangent, self.state.reference_twist,
-            self.near, tolerance, v, omega, angular, self.work,
+            self.contacts, self.factor, tolerance, v, omega, angular, self.work,
         )  # fmt: skip
         assert status == rates_module.OK
         return v, omega, angular

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from rod.helpers import random_loop, three_cases, total_twist, writhe
 from torsade.assembly import assemble, initial_state
 from torsade.rod.kinematics import (
+    carry_directors,
     edge_geometry,
-    reference_twist,
     reference_twist_change,
     small_atan,
+    spread_directors,
     transport,
-    transport_directors,
 )
 
 
@@ -67,16 +67,23 @@ def test_transport_is_the_least_rotation(seed, angle):
     assert np.allclose(back, u, rtol=0, atol=1e-12)
 
 
-def test_directors_are_carried_in_place():
-    """transport_directors is transport, edge by edge, even though it writes what it reads."""
+def carried(director, t0, t1):
+    """All directors transported from tangents t0 to t1."""
+    out = np.empty_like(director)
+    for e in range(len(director)):
+        transport(director[e], t0[e], t1[e], out[e])
+    return out
+
+
+def test_first_directors_are_carried_in_place():
+    """carry_directors is transport of the first edge of every fiber, even though it writes what it reads."""
     rng = np.random.default_rng(3)
     t0, t1 = unit(rng, 20), unit(rng, 20)
     d = np.cross(t0, unit(rng, 20))
     d /= np.linalg.norm(d, axis=1, keepdims=True)
-    expected = np.empty_like(d)
-    for e in range(20):
-        transport(d[e], t0[e], t1[e], expected[e])
-    transport_directors(d, t0, t1)
+    expected = d.copy()
+    expected[[0, 7]] = carried(d, t0, t1)[[0, 7]]
+    carry_directors(np.array([0, 7, 20]), d, t0, t1)
     assert np.array_equal(d, expected)
 
 
@@ -92,33 +99,25 @@ def test_small_atan_is_atan2(y, x, size):
 
 @pytest.mark.parametrize("case", range(3))
 @pytest.mark.parametrize("size", [1e-6, 1e-2, 0.3])
-def test_two_ways_to_the_reference_twist(case, size):
-    """The area swept on the unit sphere equals what the transported directors show (Bergou 2010, 4)."""
+def test_two_ways_to_the_directors(case, size):
+    """Directors transported one by one are those that the first one and the swept areas give.
+
+    The area swept on the unit sphere is the change of reference twist (Bergou 2010, 4).
+    """
     a, state = three_cases()[case]
     rng = np.random.default_rng(case)
     moved = state.x + size * 0.1 * rng.normal(size=state.x.shape)
     _, t0 = tangents(a, state.x)
     _, t1 = tangents(a, moved)
-    before = state.reference_twist.copy()
-    reference_twist(state.director, t0, a.hinges, before)
-    assert np.allclose(before, state.reference_twist, rtol=0, atol=1e-13)
+    spread = state.director.copy()
+    spread_directors(a.hinges, t0, state.reference_twist, spread)
+    assert np.allclose(spread, state.director, rtol=0, atol=1e-13)
     change = np.empty(len(a.hinges))
     reference_twist_change(t0, t1, a.hinges, change)
-    director, after = state.director.copy(), state.reference_twist + change
-    transport_directors(director, t0, t1)
-    reference_twist(director, t1, a.hinges, after)
-    assert np.allclose(after - state.reference_twist, change, rtol=0, atol=1e-12)
+    carry_directors(a.edge_start, spread, t0, t1)
+    spread_directors(a.hinges, t1, state.reference_twist + change, spread)
+    assert np.allclose(spread, carried(state.director, t0, t1), rtol=0, atol=1e-12)
     assert np.abs(change).max() > 0.01 * size**2
-
-
-def test_reference_twist_is_unwrapped():
-    """Whole turns already there are kept: the value nearest to the old one is taken."""
-    a, state = three_cases()[0]
-    _, t = tangents(a, state.x)
-    for turns in (-2, 1, 7):
-        twist = state.reference_twist + 2 * np.pi * turns + 0.9 * np.pi
-        reference_twist(state.director, t, a.hinges, twist)
-        assert np.allclose(twist, state.reference_twist + 2 * np.pi * turns, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -98,14 +98,17 @@ def passes_through(x0: Floats, x1: Floats, i0: Index, i1: Index, j0: Index, j1: 
             depth += 1
 
 
-def first_crossing(a: Assembly, pairs: Ints, x0: Floats, x1: Floats, length: Floats, mid: Floats) -> int:
-    """First pair of edges that pass through each other as nodes move straight from x0 to x1, or -1.
+def first_crossing(
+    a: Assembly, pairs: Ints, rows: Ints, count: Index, x0: Floats, x1: Floats, length: Floats, mid: Floats
+) -> Index:
+    """First of pairs[rows[:count]] of edges that pass through each other as nodes move from x0 to x1, or -1.
 
-    Edge lengths (n_edges,) and midpoints (n_edges, 3) at x0 bound the distance from below; only where
-    that bound is not enough is the motion followed.
+    Nodes move straight. Edge lengths (n_edges,) and midpoints (n_edges, 3) at x0 bound the distance from
+    below; only where that bound is not enough is the motion followed.
     """
     edges = a.edges
-    for k in range(pairs.shape[0]):
+    for n in range(count):
+        k: Index = rows[n]
         e = pairs[k, 0]
         f = pairs[k, 1]
         i0 = edges[e, 0]

@@ -15,10 +15,9 @@ from torsade.errors import TorsadeError
 from torsade.material import Material, Section
 from torsade.motion import scheme, stepping
 from torsade.motion.ends import Boundary
-from torsade.motion.rates import Work, energies, forces
-from torsade.rod.contact import Contacts, Model, compression, contacts_among
-from torsade.rod.kinematics import edge_geometry
-from torsade.rod.neighbours import edge_midpoints, neighbour_pairs
+from torsade.motion.near import measure
+from torsade.rod.contact import Model
+from torsade.rod.factor import no_factor
 
 
 @dataclass(frozen=True)
@@ -101,7 +100,8 @@ class Stepping:
     fixed_step : explicit Euler with this step [s]; 0 for error-controlled steps
     tolerance : local error allowed per step, in radii (positions) and radians (material angles)
     solver_tolerance : relative error, in dissipated power, of the mobility solve
-    skin : reach of the neighbour list beyond the diameter, in radii
+    skin : how far beyond the diameter pairs are listed as contacts to come, in radii
+    roam : how far nodes may go until neighbours are looked for anew, in radii
     move : farthest any node may go in one error-controlled step, in radii
     """
 
@@ -109,6 +109,7 @@ class Stepping:
     tolerance: float = 1e-2
     solver_tolerance: float = 1e-5
     skin: float = 0.8
+    roam: float = 1.6
     move: float = 0.2
 
 
@@ -132,6 +133,18 @@ class Energies(NamedTuple):
     def total(self) -> float:
         """Sum of all [J]."""
         return self.stretch + self.bend + self.twist + self.contact
+
+
+class Measured(NamedTuple):
+    """What a state tells: stored energies, forces between strands, and where they touch.
+
+    compression is, over every edge, the sum of the contact forces on it [N] (thesis Fig 4-1B); contacts
+    (n_contacts, 2) are the edges in contact.
+    """
+
+    energies: Energies
+    compression: float
+    contacts: Ints
 
 
 class Checkpoint(NamedTuple):
@@ -169,9 +182,10 @@ class Motion:
             radius,
             how.solver_tolerance,
             how.skin * radius,
+            how.roam * radius,
             how.move * radius,
         )
-        self._clock = stepping.Clock(np.zeros(5), np.zeros(5, np.int64), np.zeros(2, np.int64))
+        self._clock = stepping.Clock(np.zeros(5), np.zeros(2), np.zeros(5, np.int64), np.zeros(2, np.int64))
         self._scratch = scheme.stage_work(assembly)
 
     @property
@@ -210,7 +224,7 @@ class Motion:
         """
         status = stepping.advance(
             self.assembly, self.model, self.boundary, self.control, self.state, self._clock,
-            float(until), max_steps, self._scratch,
+            float(until), max_steps, self._scratch, no_factor(),
         )  # fmt: skip
         if status in (stepping.CROSSING, stepping.STUCK, stepping.UNSOLVABLE):
             raise TorsadeError(self._failure(status))
@@ -238,33 +252,16 @@ class Motion:
             f"the velocities cannot be solved for {when}; check forces and constraints, or use a {shorter}."
         )
 
+    def measure(self) -> Measured:
+        """Energies, compression and contacts at the present state."""
+        out = np.empty(5)
+        pairs = measure(self.assembly, self.model, self.boundary, self.state, self._scratch.work, out)
+        energies = Energies(*(float(e) for e in out[:4]))
+        return Measured(energies, float(out[4]), pairs)
+
     def energies(self) -> Energies:
         """Stored energies at the present state."""
-        work, contacts = self._evaluated()
-        out = np.empty(4)
-        energies(self.assembly, self.model, contacts, work, out)
-        return Energies(*(float(e) for e in out))
-
-    def compression(self) -> float:
-        """Total compression force [N]: over every edge, the sum of the contact forces on it."""
-        work, contacts = self._evaluated()
-        return float(compression(self.assembly, self.model, work.length, work.tangent, contacts))
-
-    def contact_pairs(self) -> Ints:
-        """Edges in contact (n_contacts, 2)."""
-        _, contacts = self._evaluated()
-        return np.asarray(contacts.edges[: contacts.count[0]].copy())
-
-    def _evaluated(self) -> tuple[Work, Contacts]:
-        """Forces and contacts at the present state, from a list of exactly the touching pairs."""
-        a, m, s, work = self.assembly, self.model, self.state, self._scratch.work
-        edge_geometry(s.x, a.edges, self._scratch.length, self._scratch.tangent)
-        edge_midpoints(s.x, a.edges, work.mid)
-        pairs = neighbour_pairs(a, work.mid, m.diameter, m.exclusion_edges, m.exclusion_length)
-        contacts = contacts_among(pairs)
-        tangent = self._scratch.tangent
-        forces(a, m, self.boundary, s.x, s.theta, tangent, s.reference_twist, contacts, work)
-        return work, contacts
+        return self.measure().energies
 
     def checkpoint(self) -> Checkpoint:
         """A copy of all that decides how the run goes on."""

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from torsade._compile import compile_kernels
-from torsade.arrays import Bools, Floats, Ints
+from torsade.arrays import Bools, Floats, Index, Ints
 from torsade.assembly import Assembly
 from torsade.motion.ends import Boundary
 from torsade.rod.contact import (
@@ -16,7 +16,6 @@ from torsade.rod.contact import (
     add_contact_forces,
     add_drag_torques,
     contact_energy,
-    contacts_among,
     find_contacts,
     find_drag,
 )
@@ -36,38 +35,13 @@ from torsade.rod.elasticity import (
     stretch_energy,
     twist_energy,
 )
+from torsade.rod.factor import WORTH, Factor, pattern, serves
 from torsade.rod.kinematics import edge_geometry, reference_twist_change
-from torsade.rod.neighbours import edge_midpoints, neighbour_pairs, without_excluded
-from torsade.rod.skyline import Skyline, skyline_for
+from torsade.rod.neighbours import edge_midpoints
 
 OK = 0
 LOOSE = 1
 UNSOLVED = 2
-
-WORTH = 5000.0
-"""Mean squared reach of matrix rows up to which a direct solve is faster than an iterative one."""
-
-
-class Near(NamedTuple):
-    """What is near what: pairs of edges to guard (n_pairs, 2), contacts, room for the mobility matrix."""
-
-    guarded: Ints
-    contacts: Contacts
-    skyline: Skyline
-
-
-def list_near(a: Assembly, m: Model, mid: Floats, length: Floats, skin: float) -> Near:
-    """A new Verlet list of edges with these midpoints (n_edges, 3) and lengths (n_edges,) [m].
-
-    Guarded are all pairs that do not share a node, contacts may come from those not excluded.
-    """
-    reach = m.diameter
-    for e in range(length.shape[0]):
-        reach = max(reach, length[e])
-    guarded = neighbour_pairs(a, mid, reach + skin, 1, 0.0)
-    cutoff = m.diameter + skin
-    pairs = without_excluded(a, guarded, mid, cutoff, m.exclusion_edges, m.exclusion_length)
-    return Near(guarded, contacts_among(pairs), skyline_for(a, pairs, WORTH))
 
 
 class Work(NamedTuple):
@@ -149,16 +123,28 @@ def _label_components(edge_fiber: Ints, contacts: Contacts, component: Ints) -> 
     n = component.shape[0]
     for f in range(n):
         component[f] = f
-    if n == 1:
-        return
+    bodies = n
     edges = contacts.edges
     for k in range(contacts.count[0]):
+        if bodies == 1:
+            return
         p = component[edge_fiber[edges[k, 0]]]
         q = component[edge_fiber[edges[k, 1]]]
         if p != q:
+            bodies -= 1
             for f in range(n):
                 if component[f] == max(p, q):
                     component[f] = min(p, q)
+
+
+def _anchored(body: Index, component: Ints, node_start: Ints, fixed: Bools) -> bool:
+    """Whether any node of a body is held."""
+    for f in range(body, component.shape[0]):
+        if component[f] == body:
+            for i in range(node_start[f], node_start[f + 1]):
+                if fixed[i]:
+                    return True
+    return False
 
 
 def hold_bodies(a: Assembly, bc: Boundary, contacts: Contacts, held: Bools, component: Ints) -> int:
@@ -172,9 +158,8 @@ def hold_bodies(a: Assembly, bc: Boundary, contacts: Contacts, held: Bools, comp
         held[i] = fixed[i]
     _label_components(a.edge_fiber, contacts, component)
     for b in range(component.shape[0]):
-        if component[b] != b:
+        if component[b] != b or _anchored(b, component, node_start, fixed):
             continue
-        anchored = False
         fx = 0.0
         fy = 0.0
         fz = 0.0
@@ -182,15 +167,13 @@ def hold_bodies(a: Assembly, bc: Boundary, contacts: Contacts, held: Bools, comp
         for f in range(b, component.shape[0]):
             if component[f] == b:
                 for i in range(node_start[f], node_start[f + 1]):
-                    anchored = anchored or fixed[i]
                     fx += force[i, 0]
                     fy += force[i, 1]
                     fz += force[i, 2]
                     size += abs(force[i, 0]) + abs(force[i, 1]) + abs(force[i, 2])
-        if not anchored:
-            if abs(fx) + abs(fy) + abs(fz) > 1e-9 * size:
-                return LOOSE
-            held[node_start[b]] = True
+        if abs(fx) + abs(fy) + abs(fz) > 1e-9 * size:
+            return LOOSE
+        held[node_start[b]] = True
     return OK
 
 
@@ -246,27 +229,29 @@ def rates(
     theta: Floats,
     base_tangent: Floats,
     base_twist: Floats,
-    near: Near,
+    contacts: Contacts,
+    factor: Factor,
     tolerance: float,
     v: Floats,
     omega: Floats,
     angular: Floats,
     w: Work,
-) -> int:
+) -> tuple[int, Factor]:
     """Velocities v (n_nodes, 3), spins omega and rates of the material angles angular (n_edges,).
 
     v holds the starting guess. The material angle is measured from a director transported straight
     from the base tangent t0, which itself turns about t by -(t0 x t) . dt/dt / (1 + t0 . t).
-    Returns OK, LOOSE (see hold_bodies) or UNSOLVED.
+    Returns OK, LOOSE (see hold_bodies) or UNSOLVED, and the factor, renewed when it did not serve.
     """
-    contacts = near.contacts
     forces(a, m, bc, x, theta, base_tangent, base_twist, contacts, w)
     find_drag(a, m, x, w.length, w.mid, contacts)
     if hold_bodies(a, bc, contacts, w.held, w.component) != OK:
-        return LOOSE
+        return LOOSE, factor
     _ground_guess(a, bc, v, w.held, w.component)
-    if not solve_mobility(a, m.eta_A, contacts, near.skyline, w.force, w.held, tolerance, v, w.mobility):
-        return UNSOLVED
+    if not serves(factor, contacts):
+        factor = pattern(a, contacts, w.mid, m.diameter, WORTH)
+    if not solve_mobility(a, m.eta_A, contacts, factor, w.force, w.held, tolerance, v, w.mobility):
+        return UNSOLVED, factor
     _centre_floating(a, bc, v, w.held, w.component)
     torque, drag_torque, spin_weight = w.torque, w.drag_torque, w.spin_weight
     for e in range(omega.shape[0]):
@@ -278,7 +263,7 @@ def rates(
         angular[e] = torque[e] + drag_torque[e]
     solve_spin(a, m.eta_J, w.tangent, angular, spin_weight, bc.turned, bc.spin, omega, w.spin)
     _material_rate(a.edges, base_tangent, w.tangent, w.length, v, omega, angular)
-    return OK
+    return OK, factor
 
 
 def _material_rate(
@@ -342,4 +327,4 @@ def energies(a: Assembly, m: Model, contacts: Contacts, w: Work, out: Floats) ->
     out[3] = contact_energy(a, m, w.length, w.tangent, contacts)
 
 
-compile_kernels(__name__)
+compile_kernels(__name__, splice=("rates",), plain=("rate_work",))

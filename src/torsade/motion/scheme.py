@@ -16,8 +16,9 @@ from torsade._compile import compile_kernels
 from torsade.arrays import Floats, Index
 from torsade.assembly import Assembly, State
 from torsade.motion.ends import Boundary
-from torsade.motion.rates import OK, Near, Work, rate_work, rates
-from torsade.rod.contact import Model
+from torsade.motion.rates import OK, Work, rate_work, rates
+from torsade.rod.contact import Contacts, Model
+from torsade.rod.factor import Factor
 
 MAX_STAGES = 40
 
@@ -32,8 +33,9 @@ class Control(NamedTuple):
     """How to step: fixed step [s] (0: error-controlled), tolerance [m] and [rad h], solver tolerance.
 
     tolerance is the local error allowed per step in any node position, and, divided by the radius,
-    in any material angle. skin [m] is the reach of the Verlet list beyond the diameter, move [m] the
-    farthest any node may go in one step.
+    in any material angle. skin [m] is how far beyond the diameter pairs are listed as contacts to come,
+    roam [m] how far nodes may go until pairs are looked for anew, move [m] the farthest any node may go
+    in one step.
     """
 
     fixed_step: float
@@ -41,6 +43,7 @@ class Control(NamedTuple):
     radius: float
     solver_tolerance: float
     skin: float
+    roam: float
     move: float
 
 
@@ -48,9 +51,9 @@ class Stages(NamedTuple):
     """Scratch of a run: the newest stage (x, theta) and two before it, with rates v, angular, omega.
 
     v0, angular0 are the rates at the start of the step; table (MAX_STAGES + 1, 5) holds the weights of
-    a step's stages; tangent, length, mid belong to the last completed step; listed (n_nodes, 3) are the
-    positions of the last neighbour list; estimate[0] the spectral radius [1/s], estimate[1] the number
-    of evaluations it took.
+    a step's stages; tangent, length, mid belong to the last completed step; searched and listed (n_nodes,
+    3) are positions when pairs were last looked for and last listed; estimate[0] the spectral radius [1/s],
+    estimate[1] the number of evaluations it took.
     """
 
     x: Floats
@@ -67,6 +70,7 @@ class Stages(NamedTuple):
     tangent: Floats
     length: Floats
     mid: Floats
+    searched: Floats
     listed: Floats
     table: Floats
     estimate: Floats
@@ -92,6 +96,7 @@ def stage_work(a: Assembly) -> Stages:
         np.empty((n_edges, 3)),
         np.empty(n_edges),
         np.empty((n_edges, 3)),
+        np.empty((n, 3)),
         np.empty((n, 3)),
         np.empty((MAX_STAGES + 1, 5)),
         np.zeros(2),
@@ -254,13 +259,14 @@ def evaluate(
     m: Model,
     bc: Boundary,
     state: State,
-    near: Near,
+    contacts: Contacts,
+    factor: Factor,
     control: Control,
     dt: float,
     stages: Index,
     g: Stages,
-) -> int:
-    """Evaluate the rates as often as a job needs, into g; returns their status.
+) -> tuple[int, Factor]:
+    """Evaluate the rates as often as a job needs, into g; returns their status and the newest factor.
 
     START: at the present state. STEP: at every stage of a step dt [s] (one stage: explicit Euler); the
     last stage, in g.x and g.theta, is the result. SPECTRUM: at small displacements, to estimate the
@@ -272,25 +278,25 @@ def evaluate(
         chebyshev_table(stages, dt, g.table)
     most = stages if job == STEP else (12 if job == SPECTRUM else 1)
     for k in range(most):
-        factor = 0.0
+        displaced = 0.0
         if job == STEP:
             _next_stage(g.table[k + 1], state, g)
         elif job == SPECTRUM:
-            factor = _perturb(state, control.radius, g)
+            displaced = _perturb(state, control.radius, g)
             copy(g.v0, g.v)
-        status = rates(
-            a, m, bc, g.x, g.theta, g.tangent, state.reference_twist, near, control.solver_tolerance,
-            g.v, g.omega, g.angular, g.work,
+        status, factor = rates(
+            a, m, bc, g.x, g.theta, g.tangent, state.reference_twist, contacts, factor,
+            control.solver_tolerance, g.v, g.omega, g.angular, g.work,
         )  # fmt: skip
         g.estimate[1] = k + 1.0
         if status != OK:
-            return status
+            return status, factor
         if job == SPECTRUM:
             previous = g.estimate[0]
-            g.estimate[0] = _response(control.radius, factor, g)
+            g.estimate[0] = _response(control.radius, displaced, g)
             if k > 1 and abs(g.estimate[0] - previous) < 0.05 * g.estimate[0]:
-                return OK
-    return OK
+                return OK, factor
+    return OK, factor
 
 
 def embedded_error(state: State, g: Stages, dt: float, radius: float) -> float:
@@ -313,4 +319,6 @@ def embedded_error(state: State, g: Stages, dt: float, radius: float) -> float:
     return largest
 
 
-compile_kernels(__name__, inline=("copy", "copy_flat", "_set_row"))
+compile_kernels(
+    __name__, inline=("copy", "copy_flat", "_set_row"), splice=("evaluate",), plain=("stage_work",)
+)

@@ -8,8 +8,9 @@ from torsade._compile import compile_kernels
 from torsade.arrays import Floats, Index, Ints
 from torsade.assembly import Assembly, State
 from torsade.motion.ends import Boundary
-from torsade.motion.guard import first_crossing, largest_move
-from torsade.motion.rates import LOOSE, OK, Near, list_near, powers
+from torsade.motion.guard import largest_move
+from torsade.motion.near import Near, crossing, find_near, list_near
+from torsade.motion.rates import LOOSE, OK, powers
 from torsade.motion.scheme import (
     ONE_STAGE,
     SPECTRUM,
@@ -23,9 +24,10 @@ from torsade.motion.scheme import (
     evaluate,
     stages_for,
 )
-from torsade.rod.contact import Model
-from torsade.rod.kinematics import edge_geometry, reference_twist, transport_directors
-from torsade.rod.neighbours import edge_midpoints, neighbour_pairs
+from torsade.rod.contact import Contacts, Model
+from torsade.rod.factor import Factor
+from torsade.rod.kinematics import carry_directors, edge_geometry, spread_directors
+from torsade.rod.neighbours import edge_midpoints
 
 REACHED = 0
 SLIPPED = 1
@@ -41,20 +43,21 @@ class Clock(NamedTuple):
     """What a run carries from step to step, in arrays so that kernels can write them.
 
     time (5,): t [s], next step [s], external work [J], dissipation [J], spectral radius [1/s].
+    power (2,): external and dissipated power [W] at the start of the step.
     count (5,): steps, refused steps, evaluations of the rates, neighbour lists made, steps since the
     spectral radius was estimated. culprit (2,): the edges that stopped the run.
     """
 
     time: Floats
+    power: Floats
     count: Ints  # type: ignore[assignment]  # hides tuple.count
     culprit: Ints
 
 
 def _commit(a: Assembly, state: State, g: Stages) -> None:
-    """Accept g.x, g.theta: carry the directors along and unwrap the reference twist."""
-    transport_directors(state.director, g.tangent, g.work.tangent)
+    """Accept g.x, g.theta: carry directors and reference twist along."""
+    carry_directors(a.edge_start, state.director, g.tangent, g.work.tangent)
     copy_flat(g.work.change, state.reference_twist)
-    reference_twist(state.director, g.work.tangent, a.hinges, state.reference_twist)
     copy(g.work.tangent, g.tangent)
     copy_flat(g.work.length, g.length)
     copy(g.work.mid, g.mid)
@@ -71,12 +74,12 @@ def _take_rates(state: State, g: Stages) -> None:
     copy_flat(g.omega, g.angular0)
 
 
-def _list_near(a: Assembly, m: Model, control: Control, state: State, g: Stages, clock: Clock) -> Near:
-    """A new Verlet list around the present positions."""
+def _find_near(a: Assembly, m: Model, control: Control, state: State, g: Stages, clock: Clock) -> Near:
+    """Look for pairs around the present positions."""
+    copy(state.x, g.searched)
     copy(state.x, g.listed)
-    edge_midpoints(state.x, a.edges, g.mid)
     clock.count[3] += 1
-    return list_near(a, m, g.mid, g.length, control.skin)
+    return find_near(a, m, control, g.mid, g.length)
 
 
 def _take_spectrum(g: Stages, clock: Clock) -> None:
@@ -86,6 +89,16 @@ def _take_spectrum(g: Stages, clock: Clock) -> None:
     clock.count[4] = 0
     if clock.time[1] <= 0.0:
         clock.time[1] = 1.0 / clock.time[4]
+
+
+def _count_work(
+    a: Assembly, m: Model, bc: Boundary, contacts: Contacts, dt: float, g: Stages, clock: Clock
+) -> None:
+    """Add external work and dissipation of the step dt [s] that has led to the rates in g."""
+    supplied, lost = powers(a, m, bc, g.v, g.omega, contacts, g.work)
+    clock.time[2] += 0.5 * dt * (clock.power[0] + supplied)
+    clock.time[3] += 0.5 * dt * (clock.power[1] + lost)
+    clock.power[0], clock.power[1] = supplied, lost
 
 
 def _next_step(control: Control, clock: Clock, until: float) -> tuple[float, bool]:
@@ -99,56 +112,36 @@ def _next_step(control: Control, clock: Clock, until: float) -> tuple[float, boo
     return dt, False
 
 
-def _crossing(
-    a: Assembly, m: Model, control: Control, state: State, near: Near, g: Stages, move: float
-) -> tuple[Index, Index]:
-    """Edges that would pass through each other in the step to g.x, or (-1, -1)."""
-    pairs = near.guarded
-    if move > control.move:
-        reach = m.diameter
-        for e in range(g.length.shape[0]):
-            reach = max(reach, g.length[e])
-        pairs = neighbour_pairs(a, g.mid, reach + control.skin + 2.0 * move, 1, 0.0)
-    k = first_crossing(a, pairs, state.x, g.x, g.length, g.mid)
-    return (pairs[k, 0], pairs[k, 1]) if k >= 0 else (-1, -1)
-
-
-def _try_step(
+def _judge(
     a: Assembly,
-    m: Model,
-    bc: Boundary,
     state: State,
     near: Near,
     control: Control,
+    status: int,
     dt: float,
     g: Stages,
     clock: Clock,
-) -> tuple[float, float, int]:
-    """Take a step dt [s] into g; returns the step taken, its error over the tolerance and a verdict.
+) -> tuple[float, int]:
+    """Error over the tolerance of the step dt [s] in g, and a verdict.
 
     A verdict of REACHED accepts the step; SLIPPED, CROSSING, STUCK and UNSOLVABLE refuse it.
     """
     ratio = 0.0
-    stages: Index = ONE_STAGE
-    if control.fixed_step == 0.0:
-        stages, dt = stages_for(dt, clock.time[4])
-    status = evaluate(STEP, a, m, bc, state, near, control, dt, stages, g)
-    clock.count[2] += stages
-    if status == OK and control.fixed_step == 0.0:
-        ratio = embedded_error(state, g, dt, control.radius) / control.tolerance
     if status != OK:
-        return dt, 8.0, SLIPPED if status == LOOSE else UNSOLVABLE
+        return 8.0, SLIPPED if status == LOOSE else UNSOLVABLE
+    if control.fixed_step == 0.0:
+        ratio = embedded_error(state, g, dt, control.radius) / control.tolerance
     if not ratio <= 1.0:
-        return dt, ratio, STUCK
+        return ratio, STUCK
     move = largest_move(state.x, g.x)
     if not move < 1e300:
-        return dt, 8.0, UNSOLVABLE
-    clock.culprit[0], clock.culprit[1] = _crossing(a, m, control, state, near, g, move)
+        return 8.0, UNSOLVABLE
+    clock.culprit[0], clock.culprit[1] = crossing(a, control, near, state.x, g.x, g.length, g.mid, move)
     if clock.culprit[0] >= 0:
-        return dt, 8.0, CROSSING
+        return 8.0, CROSSING
     if control.fixed_step == 0.0 and move > control.move:
-        return dt, min(8.0, (1.25 * move / control.move) ** 3), STUCK
-    return dt, ratio, REACHED
+        return min(8.0, (1.25 * move / control.move) ** 3), STUCK
+    return ratio, REACHED
 
 
 def _adapt(tried: float, dt: float, ratio: float, growth: float, clock: Clock) -> None:
@@ -167,60 +160,83 @@ def advance(
     until: float,
     max_steps: int,
     g: Stages,
+    factor: Factor,
 ) -> int:
     """Advance state (in place) to the time until [s] in at most max_steps steps; returns why it stopped.
 
     REACHED, PAUSED (max_steps taken), SLIPPED (a pulled body that nothing holds any more), CROSSING
-    (strands would pass through each other), STUCK (no step is short enough), UNSOLVABLE.
+    (strands would pass through each other), STUCK (no step is short enough), UNSOLVABLE. A factor that is
+    not made yet starts it.
     """
     edge_geometry(state.x, a.edges, g.length, g.tangent)
+    edge_midpoints(state.x, a.edges, g.mid)
     if until <= clock.time[0]:
         return REACHED
-    near = _list_near(a, m, control, state, g, clock)
-    begin = True
-    supplied = 0.0
-    lost = 0.0
-    for _ in range(max_steps):
+    near = _find_near(a, m, control, state, g, clock)
+    unmade = factor
+    adaptive = control.fixed_step == 0.0
+    job, begin, again = START, True, False
+    verdict = PAUSED
+    left = max_steps
+    stages: Index = ONE_STAGE
+    tried, dt, last = 0.0, 0.0, False
+    while verdict == PAUSED:
         if begin:
-            status = evaluate(START, a, m, bc, state, near, control, 0.0, ONE_STAGE, g)
+            job = START
+        elif until - clock.time[0] <= 1e-12 * until:
+            clock.time[0] = until
+            verdict = REACHED
+            break
+        elif left == 0:
+            break
+        elif adaptive and not again and (clock.count[4] >= STEPS_PER_SPECTRUM or clock.time[4] == 0.0):
+            job = SPECTRUM
+        else:
+            job = STEP
+            tried, last = _next_step(control, clock, until)
+            stages, dt = stages_for(tried, clock.time[4]) if adaptive else (ONE_STAGE, tried)
+        status, factor = evaluate(job, a, m, bc, state, near.contacts, factor, control, dt, stages, g)
+        if job == START:
             clock.count[2] += 1
             if status != OK:
-                return SLIPPED if status == LOOSE else UNSOLVABLE
-            _take_rates(state, g)
-            supplied, lost = powers(a, m, bc, g.v, g.omega, near.contacts, g.work)
-        if until - clock.time[0] <= 1e-12 * until:
-            clock.time[0] = until
-            return REACHED
-        if control.fixed_step == 0.0 and (clock.count[4] >= STEPS_PER_SPECTRUM or clock.time[4] == 0.0):
-            evaluate(SPECTRUM, a, m, bc, state, near, control, 0.0, ONE_STAGE, g)
-            _take_spectrum(g, clock)
-        growth = 2.0
-        while True:
-            tried, last = _next_step(control, clock, until)
-            dt, ratio, verdict = _try_step(a, m, bc, state, near, control, tried, g, clock)
-            if verdict == REACHED:
+                verdict = SLIPPED if status == LOOSE else UNSOLVABLE
                 break
+            _take_rates(state, g)
+            clock.power[0], clock.power[1] = powers(a, m, bc, g.v, g.omega, near.contacts, g.work)
+            begin = False
+            continue
+        if job == SPECTRUM:
+            _take_spectrum(g, clock)
+            continue
+        clock.count[2] += stages
+        ratio, judged = _judge(a, state, near, control, status, dt, g, clock)
+        if judged != REACHED:
             clock.count[1] += 1
-            growth = 1.0
-            if control.fixed_step > 0.0 or dt < 1e-13 * until:
-                return verdict
             clock.time[1] = dt * max(0.1, 0.8 * ratio ** (-1.0 / 3.0))
+            again = True
+            if not adaptive or not dt > 1e-13 * (clock.time[0] + dt):
+                verdict = judged
+            continue
         clock.time[0] = until if last and dt == tried else clock.time[0] + dt
         clock.count[0] += 1
         clock.count[4] += 1
-        if control.fixed_step == 0.0:
-            _adapt(tried, dt, ratio, growth, clock)
-        supplied_before = supplied
-        lost_before = lost
-        supplied, lost = powers(a, m, bc, g.v, g.omega, near.contacts, g.work)
-        clock.time[2] += 0.5 * dt * (supplied_before + supplied)
-        clock.time[3] += 0.5 * dt * (lost_before + lost)
+        left -= 1
+        if adaptive:
+            _adapt(tried, dt, ratio, 1.0 if again else 2.0, clock)
+        again = False
+        _count_work(a, m, bc, near.contacts, dt, g, clock)
         _commit(a, state, g)
         moved = largest_move(g.listed, state.x)
         begin = moved > 0.5 * control.skin  # a fixed step that outran the list: find contacts again
         if moved > 0.25 * control.skin:
-            near = _list_near(a, m, control, state, g, clock)
-    return PAUSED
+            if largest_move(g.searched, state.x) > control.roam:
+                near = _find_near(a, m, control, state, g, clock)
+                factor = unmade
+            else:
+                copy(state.x, g.listed)
+                list_near(m, control, g.mid, g.length, near)
+    spread_directors(a.hinges, g.tangent, state.reference_twist, state.director)
+    return verdict
 
 
-compile_kernels(__name__)
+compile_kernels(__name__, splice=("_judge", "_find_near"))

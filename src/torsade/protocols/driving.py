@@ -194,8 +194,7 @@ def _warm_up(motion: Motion) -> None:
     """Compile or load every kernel, and leave no trace."""
     start = motion.checkpoint()
     motion.advance(0.0)
-    motion.energies()
-    motion.compression()
+    motion.measure()
     motion.restore(start)
 
 
@@ -255,15 +254,15 @@ def _settle(motion: Motion, until: float) -> Outcome:
 
 def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, float | Floats]:
     """Everything recorded at the present time."""
-    assembly, state, energies = motion.assembly, motion.state, motion.energies()
+    assembly, state, now = motion.assembly, motion.state, motion.measure()
     common: dict[str, float | Floats] = {
         "time": motion.time,
-        "compression": motion.compression(),
+        "compression": now.compression,
         "twist": observables.twist(assembly, state),
-        "energy_stretch": energies.stretch,
-        "energy_bend": energies.bend,
-        "energy_twist": energies.twist,
-        "energy_contact": energies.contact,
+        "energy_stretch": now.energies.stretch,
+        "energy_bend": now.energies.bend,
+        "energy_twist": now.energies.twist,
+        "energy_contact": now.energies.contact,
         "external_work": motion.external_work,
         "dissipation": motion.dissipation,
         "position": state.x,

@@ -23,8 +23,9 @@ from typing import NamedTuple
 import numpy as np
 
 from torsade._compile import compile_kernels
-from torsade.arrays import Bools, Floats, Index, Ints
+from torsade.arrays import Floats, Index, Ints
 from torsade.assembly import Assembly
+from torsade.rod.neighbours import near_rows
 
 
 class Model(NamedTuple):
@@ -58,41 +59,53 @@ class Model(NamedTuple):
 class Contacts(NamedTuple):
     """Edge pairs near each other, those in contact, and the drag between nodes that follows.
 
-    pairs (n_pairs, 2) is the Verlet list; the first count[0] rows of edges (n_pairs, 2), direction
-    (n_pairs, 3; unit vector from the first to the second edge) and distance (n_pairs,) are contacts;
-    the first count[1] rows of drag_nodes (2 n_pairs, 4) and drag_weight (2 n_pairs,) [N s/m] couple the
-    mean velocity of the first two nodes to that of the last two.
+    pairs (n_pairs, 2) may come to touch; the first count[2] of listed (n_pairs,) are those of them that
+    may touch now. The first count[0] rows of edges (n_pairs, 2), direction (n_pairs, 3; unit vector from
+    the first to the second edge), distance (n_pairs,) and row (n_pairs,; in pairs) are contacts. The first
+    count[1] rows of drag_nodes (2 n_pairs, 4) and drag_weight (2 n_pairs,) [N s/m] couple the mean
+    velocity of the first two nodes to that of the last two, because of the contact drag_contact.
     """
 
     pairs: Ints
+    listed: Ints
     edges: Ints
     direction: Floats
     distance: Floats
+    row: Ints
     drag_nodes: Ints
     drag_weight: Floats
+    drag_contact: Ints
     count: Ints  # type: ignore[assignment]  # hides tuple.count
 
 
 def contacts_among(pairs: Ints) -> Contacts:
-    """Empty contacts with room for every pair of the Verlet list."""
+    """No contacts yet, with room for every pair (n_pairs, 2); all pairs are listed."""
     n = max(1, pairs.shape[0])
+    listed = np.empty(pairs.shape[0], np.int64)
+    for k in range(listed.shape[0]):
+        listed[k] = k
+    count = np.empty(3, np.int64)
+    count[0], count[1], count[2] = 0, 0, listed.shape[0]
     return Contacts(
-        pairs,
-        np.empty((n, 2), np.int64),
-        np.empty((n, 3)),
-        np.empty(n),
-        np.empty((2 * n, 4), np.int64),
-        np.empty(2 * n),
-        np.zeros(2, np.int64),
-    )
+        pairs, listed, np.empty((n, 2), np.int64), np.empty((n, 3)), np.empty(n), np.empty(n, np.int64),
+        np.empty((2 * n, 4), np.int64), np.empty(2 * n), np.empty(2 * n, np.int64), count,
+    )  # fmt: skip
+
+
+def list_contacts(mid: Floats, reach: float, contacts: Contacts) -> None:
+    """List the pairs with midpoints (n_edges, 3) nearer than reach [m]: only they may touch for a while."""
+    pairs, listed = contacts.pairs, contacts.listed
+    contacts.count[2] = near_rows(pairs, mid, reach, listed)
 
 
 def find_contacts(m: Model, mid: Floats, contacts: Contacts) -> None:
-    """Fill contacts.edges, direction, distance with the pairs nearer than the diameter."""
-    pairs, edges, direction, distance = contacts.pairs, contacts.edges, contacts.direction, contacts.distance
+    """Fill contacts.edges, direction, distance, row with the listed pairs nearer than the diameter."""
+    pairs, listed, row = contacts.pairs, contacts.listed, contacts.row
+    edges, direction, distance = contacts.edges, contacts.direction, contacts.distance
     reach = m.diameter * m.diameter
     count = 0
-    for k in range(pairs.shape[0]):
+    for n in range(contacts.count[2]):
+        k = listed[n]
         e = pairs[k, 0]
         f = pairs[k, 1]
         dx = mid[f, 0] - mid[e, 0]
@@ -104,6 +117,7 @@ def find_contacts(m: Model, mid: Floats, contacts: Contacts) -> None:
             s = 1.0 / R
             edges[count, 0] = e
             edges[count, 1] = f
+            row[count] = k
             distance[count] = R
             direction[count, 0] = dx * s
             direction[count, 1] = dy * s
@@ -172,20 +186,6 @@ def compression(a: Assembly, m: Model, length: Floats, tangent: Floats, contacts
     return total
 
 
-def _shift_back(e: Index, fiber: Index, edge_start: Ints, closed: Bools) -> Index:
-    """The edge that ends where edge e starts, or -1 at a free end."""
-    if e > edge_start[fiber]:
-        return e - 1
-    return edge_start[fiber + 1] - 1 if closed[fiber] else -1
-
-
-def _shift_on(e: Index, fiber: Index, edge_start: Ints, closed: Bools) -> Index:
-    """The edge that starts where edge e ends, or -1 at a free end."""
-    if e < edge_start[fiber + 1] - 1:
-        return e + 1
-    return edge_start[fiber] if closed[fiber] else -1
-
-
 def _find_node_pairs(
     a: Assembly, m: Model, x: Floats, length: Floats, mid: Floats, contacts: Contacts
 ) -> None:
@@ -194,19 +194,16 @@ def _find_node_pairs(
     So do the end nodes of touching edges, which are the start nodes of the next ones; a coupling that
     the edges before have already made is not made twice. Edges before are as far apart along a fiber.
     """
-    nodes, edge_fiber, edge_start, closed = a.edges, a.edge_fiber, a.edge_start, a.closed
-    edges, drag_nodes, drag_weight = contacts.edges, contacts.drag_nodes, contacts.drag_weight
+    nodes, neighbour = a.edges, a.beside
+    edges, drag_contact = contacts.edges, contacts.drag_contact
+    drag_nodes, drag_weight = contacts.drag_nodes, contacts.drag_weight
     count = 0
     for k in range(2 * contacts.count[0]):
         end = 1 - k % 2
         e = edges[k // 2, 0]
         f = edges[k // 2, 1]
-        if end == 1:
-            eb = _shift_on(e, edge_fiber[e], edge_start, closed)
-            fb = _shift_on(f, edge_fiber[f], edge_start, closed)
-        else:
-            eb = _shift_back(e, edge_fiber[e], edge_start, closed)
-            fb = _shift_back(f, edge_fiber[f], edge_start, closed)
+        eb = neighbour[e, end]
+        fb = neighbour[f, end]
         i = nodes[e, end]
         j = nodes[f, end]
         squared = 0.0
@@ -224,6 +221,7 @@ def _find_node_pairs(
         drag_nodes[count, 2] = j
         drag_nodes[count, 3] = j
         drag_weight[count] = m.eta_f_A * 0.25 * lbar / squared
+        drag_contact[count] = k // 2
         count += 1
     contacts.count[1] = count
 
@@ -232,7 +230,7 @@ def find_drag(a: Assembly, m: Model, x: Floats, length: Floats, mid: Floats, con
     """Fill contacts.drag_nodes and drag_weight from the contacts found, each coupling once."""
     nodes, rest_length = a.edges, a.rest_length
     edges, distance = contacts.edges, contacts.distance
-    drag_nodes, drag_weight = contacts.drag_nodes, contacts.drag_weight
+    drag_nodes, drag_weight, drag_contact = contacts.drag_nodes, contacts.drag_weight, contacts.drag_contact
     if m.node_pair:
         _find_node_pairs(a, m, x, length, mid, contacts)
         return
@@ -245,6 +243,7 @@ def find_drag(a: Assembly, m: Model, x: Floats, length: Floats, mid: Floats, con
         drag_nodes[k, 2] = nodes[f, 0]
         drag_nodes[k, 3] = nodes[f, 1]
         drag_weight[k] = m.eta_f_A * rest_length[e] * rest_length[f] / (R * R * R)
+        drag_contact[k] = k
     contacts.count[1] = contacts.count[0]
 
 
@@ -286,4 +285,4 @@ def add_drag_torques(
             spin_weight[f] += wf
 
 
-compile_kernels(__name__, inline=("contact_pressure", "_area", "_shift_back", "_shift_on"))
+compile_kernels(__name__, inline=("contact_pressure", "_area"))

@@ -92,32 +92,34 @@ def transport(u: Floats, a: Floats, b: Floats, out: Floats) -> None:
     out[2] = vz * s
 
 
-def transport_directors(director: Floats, tangent_0: Floats, tangent: Floats) -> None:
-    """Carry every reference director (n_edges, 3) from tangent_0 to tangent, in place."""
-    for e in range(director.shape[0]):
+def carry_directors(edge_start: Ints, director: Floats, tangent_0: Floats, tangent: Floats) -> None:
+    """Carry the first reference director of every fiber from tangent_0 to tangent (n_edges, 3), in place.
+
+    The others follow from it and the reference twists, see `spread_directors`.
+    """
+    for f in range(edge_start.shape[0] - 1):
+        e = edge_start[f]
         transport(director[e], tangent_0[e], tangent[e], director[e])
 
 
-def reference_twist(director: Floats, tangent: Floats, hinges: Ints, twist: Floats) -> None:
-    """Reference twist [rad] of every hinge, unwrapped to the value nearest to the one in twist.
+def spread_directors(hinges: Ints, tangent: Floats, reference_twist: Floats, director: Floats) -> None:
+    """Make all reference directors (n_edges, 3) from the first of every fiber, hinge after hinge.
 
-    director, tangent (n_edges, 3); twist (n_hinges,) holds the previous values and receives the new.
+    Across a hinge the director is transported from one tangent (n_edges, 3) to the next and turned about
+    that by the reference twist (n_hinges,) [rad]. A closed fiber's seam closes by itself.
     """
     moved = np.empty(3)
     for k in range(hinges.shape[0]):
         a = hinges[k, 0]
         b = hinges[k, 1]
-        transport(director[a], tangent[a], tangent[b], moved)
-        u = director[b]
-        t = tangent[b]
-        cosine = moved[0] * u[0] + moved[1] * u[1] + moved[2] * u[2]
-        sine = (
-            t[0] * (moved[1] * u[2] - moved[2] * u[1])
-            + t[1] * (moved[2] * u[0] - moved[0] * u[2])
-            + t[2] * (moved[0] * u[1] - moved[1] * u[0])
-        )
-        angle = math.atan2(sine, cosine)
-        twist[k] = angle + 2.0 * math.pi * round((twist[k] - angle) / (2.0 * math.pi))
+        if b == a + 1:
+            transport(director[a], tangent[a], tangent[b], moved)
+            c = math.cos(reference_twist[k])
+            s = math.sin(reference_twist[k])
+            t = tangent[b]
+            director[b, 0] = c * moved[0] + s * (t[1] * moved[2] - t[2] * moved[1])
+            director[b, 1] = c * moved[1] + s * (t[2] * moved[0] - t[0] * moved[2])
+            director[b, 2] = c * moved[2] + s * (t[0] * moved[1] - t[1] * moved[0])
 
 
 compile_kernels(__name__, inline=("_half_solid_angle", "small_atan", "transport"))

@@ -41,6 +41,15 @@ def _hash_cells(mid: Floats, side: float, head: Ints, following: Ints, cell: Int
         head[b] = e
 
 
+def _first(count: Index, pairs: Ints, room: Index) -> Ints:
+    """The first count rows of pairs (n, 2), in an array with room for more if room says so."""
+    out = np.empty((max(count, room), 2), np.int64)
+    for k in range(count):
+        out[k, 0] = pairs[k, 0]
+        out[k, 1] = pairs[k, 1]
+    return out
+
+
 def near_points(mid: Floats, cutoff: float) -> Ints:
     """All pairs e < f of points mid (n, 3) [m] nearer than cutoff [m].
 
@@ -63,11 +72,7 @@ def near_points(mid: Floats, cutoff: float) -> Ints:
         x, y, z = mid[e, 0], mid[e, 1], mid[e, 2]
         ci, cj, ck = cell[e, 0], cell[e, 1], cell[e, 2]
         if total + n > pairs.shape[0]:
-            grown = np.empty((2 * (total + n), 2), np.int64)
-            for k in range(total):
-                grown[k, 0] = pairs[k, 0]
-                grown[k, 1] = pairs[k, 1]
-            pairs = grown
+            pairs = _first(total, pairs, 2 * (total + n))
         for i in range(ci - 1, ci + 2):
             for j in range(cj - 1, cj + 2):
                 for k in range(ck - 1, ck + 2):
@@ -82,7 +87,7 @@ def near_points(mid: Floats, cutoff: float) -> Ints:
                                 pairs[total, 1] = f
                                 total += 1
                         f = following[f]
-    return pairs[:total]
+    return _first(total, pairs, 0)
 
 
 def neighbour_pairs(
@@ -98,7 +103,7 @@ def without_excluded(
     """The pairs (n_pairs, 2) with midpoints nearer than cutoff [m] that are not excluded."""
     edge_fiber, edge_start, closed = a.edge_fiber, a.edge_start, a.closed
     arclength, fiber_length = a.edge_arclength, a.fiber_length
-    kept = np.empty_like(pairs)
+    kept = np.empty((pairs.shape[0], 2), np.int64)
     count = 0
     for k in range(pairs.shape[0]):
         e = pairs[k, 0]
@@ -119,7 +124,24 @@ def without_excluded(
             kept[count, 0] = e
             kept[count, 1] = f
             count += 1
-    return kept[:count].copy()
+    return _first(count, kept, 0)
+
+
+def near_rows(pairs: Ints, mid: Floats, reach: float, rows: Ints) -> int:
+    """Rows of pairs (n_pairs, 2) of edges with midpoints nearer than reach [m], into rows; returns how many.
+
+    mid (n_edges, 3) [m], rows (n_pairs,).
+    """
+    count = 0
+    for k in range(pairs.shape[0]):
+        e = pairs[k, 0]
+        f = pairs[k, 1]
+        dx = mid[f, 0] - mid[e, 0]
+        dy = mid[f, 1] - mid[e, 1]
+        dz = mid[f, 2] - mid[e, 2]
+        rows[count] = k
+        count += dx * dx + dy * dy + dz * dz < reach * reach
+    return count
 
 
 compile_kernels(__name__, inline=("_bucket",))
