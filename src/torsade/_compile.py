@@ -80,14 +80,14 @@ class Kernel:
     take as long to compile as the kernels. A call from Python compiles such an entry when it first comes.
     """
 
-    def __init__(self, function: Callable[..., Any], **options: Any) -> None:
+    def __init__(self, function: Callable[..., Any], counting: bool, **options: Any) -> None:
         self.__doc__ = function.__doc__
         self.__name__ = function.__name__
         self.__module__ = function.__module__
         self.py_func = function
         self._options = options
         with _caching("kernels"):
-            self._inner = njit(no_cpython_wrapper=True, **options)(function)
+            self._inner = njit(no_cpython_wrapper=True, _nrt=counting, **options)(function)
         self.targetoptions = self._inner.targetoptions
         self._entry: Callable[..., Any] | None = None
 
@@ -115,14 +115,21 @@ def _caching(folder: str) -> Iterator[None]:
 
 
 def compile_kernels(
-    module_name: str, inline: tuple[str, ...] = (), splice: tuple[str, ...] = (), plain: tuple[str, ...] = ()
+    module_name: str,
+    inline: tuple[str, ...] = (),
+    splice: tuple[str, ...] = (),
+    owning: tuple[str, ...] = (),
+    plain: tuple[str, ...] = (),
 ) -> None:
     """Compile every function that the module defines, in place; those named plain stay as they are.
 
     Functions named under inline become part of the machine code of their callers: passing arrays to a
     small function costs more than what it does. Functions named under splice, called in one place only,
-    become part of their caller before compilation, which spares compiling all they call once more. With
-    ``NUMBA_DISABLE_JIT=1`` all functions stay plain Python and can be stepped through.
+    become part of their caller before compilation, which spares compiling all they call once more.
+    Functions named under owning make arrays, or are given new ones by what they call, and count references
+    to arrays; the others only borrow, and save the atomic operations (the compiler refuses a function that
+    makes arrays and is not named). With ``NUMBA_DISABLE_JIT=1`` all functions stay plain Python and can
+    be stepped through.
     """
     if config.DISABLE_JIT:
         return
@@ -141,4 +148,4 @@ def compile_kernels(
                 options["forceinline"] = True
             if name in splice:
                 options["inline"] = "always"
-            setattr(module, name, Kernel(function, **options))
+            setattr(module, name, Kernel(function, name in owning, **options))

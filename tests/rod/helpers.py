@@ -14,7 +14,7 @@ from torsade.motion.ends import Boundary, free
 from torsade.motion.overdamped import STANDARD, Laws, model
 from torsade.rod.contact import Model, add_drag_torques, contacts_among
 from torsade.rod.damping import apply_drag
-from torsade.rod.factor import WORTH, pattern
+from torsade.rod.factor import pattern
 from torsade.rod.kinematics import edge_geometry
 from torsade.rod.neighbours import edge_midpoints, neighbour_pairs
 
@@ -115,7 +115,7 @@ def _rotated(state: State, fiber_edges: slice, angle: float) -> State:
 class Probe:
     """Energies, forces and rates of a state at displaced nodes and angles, frames carried from the state.
 
-    Velocities are solved for directly; with worth=0, by conjugate gradients.
+    Velocities are solved for directly; with direct=False, by conjugate gradients.
     """
 
     def __init__(
@@ -124,7 +124,7 @@ class Probe:
         m: Model,
         state: State,
         bc: Boundary | None = None,
-        worth: float = WORTH,
+        direct: bool = True,
     ) -> None:
         self.a, self.m, self.state, self.bc = a, m, state, bc or free(a)
         self.length, self.tangent = np.empty(len(a.edges)), np.empty((len(a.edges), 3))
@@ -133,7 +133,8 @@ class Probe:
         pairs = pairs_within(a, state.x, 3 * m.diameter, m.exclusion_edges, m.exclusion_length)
         self.contacts = contacts_among(pairs)
         edge_midpoints(state.x, a.edges, self.work.mid)
-        self.factor = pattern(a, self.contacts, self.work.mid, 3 * m.diameter, worth)
+        made = pattern(a, self.contacts, self.work.mid, 3 * m.diameter, np.inf)
+        self.factor = made if direct else ()
 
     def evaluate(self, x: Floats, theta: Floats) -> None:
         rates_module.forces(

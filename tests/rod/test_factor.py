@@ -88,10 +88,9 @@ def test_both_solvers_agree_with_dense_cholesky(seed, sizes, n, node_pair, share
     L = np.linalg.cholesky(M[np.ix_(free, free)])
     rhs = force[free] - M[np.ix_(free, fixed)] @ held[fixed]
     expected[free] = np.linalg.solve(L.T, np.linalg.solve(L, rhs))
-    for worth in (1e9, 0.0):
-        factor = direct.pattern(a, contacts, np.zeros((len(a.edges), 3)), 1.0, worth)
-        assert factor.kind[0] == (direct.DIRECT if worth else direct.ITERATIVE)
-        assert direct.serves(factor, contacts)
+    made = direct.renewed(direct.no_factor(), a, contacts, np.zeros((len(a.edges), 3)), 1.0)
+    assert direct.serves(made, contacts)
+    for factor in (made, ()):
         v = np.where(fixed[:, None], held, rng.normal(size=force.shape))
         work = mobility_work(len(fixed), len(a.edges))
         assert solve_mobility(a, ETA_A, contacts, factor, force, fixed, 1e-13, v, work)
@@ -104,12 +103,14 @@ def open_chain(n):
     return a, contacts_among(np.empty((0, 2), np.int64)), midpoints(a, straight(n, 4.0))
 
 
-def test_worth_decides_which_solver():
-    """Chains take one operation per node; where less is allowed, the system is solved iteratively."""
+def test_dense_systems_are_recognised():
+    """Chains take one operation per node; where less is allowed, no factor is made."""
     a, none, mid = open_chain(20)
-    assert direct.pattern(a, none, mid, 0.1, 0.9).kind[0] == direct.ITERATIVE
+    dense = direct.pattern(a, none, mid, 0.1, 0.9)
+    assert dense.kind[0] == direct.DENSE
+    assert not direct.usable(dense)
     made = direct.pattern(a, none, mid, 0.1, 1.0)
-    assert made.kind[0] == direct.DIRECT
+    assert direct.usable(made)
     assert len(made.value) == 19
     assert len(made.tape) == 0
 

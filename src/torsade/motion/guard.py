@@ -129,4 +129,6 @@ def first_crossing(
     return -1
 
 
-compile_kernels(__name__, inline=("_clamped", "segment_distance", "_relative_move"))
+compile_kernels(
+    __name__, inline=("_clamped", "segment_distance", "_relative_move"), owning=("passes_through",)
+)

@@ -100,4 +100,4 @@ def measure(a: Assembly, m: Model, bc: Boundary, state: State, w: Work, out: Flo
     return pairs
 
 
-compile_kernels(__name__, inline=("_guard_reach",))
+compile_kernels(__name__, inline=("_guard_reach",), owning=("find_near", "crossing", "measure"))

@@ -222,10 +222,13 @@ class Motion:
         TorsadeError
             When strands would pass through each other (with the place), or no step is short enough.
         """
-        status = stepping.advance(
-            self.assembly, self.model, self.boundary, self.control, self.state, self._clock,
-            float(until), max_steps, self._scratch, no_factor(),
-        )  # fmt: skip
+        status, begun = stepping.CROWDED, self.steps
+        for factor in (no_factor(), ()):
+            if status == stepping.CROWDED:
+                status = stepping.advance(
+                    self.assembly, self.model, self.boundary, self.control, self.state, self._clock,
+                    float(until), max_steps + begun - self.steps, self._scratch, factor,
+                )  # fmt: skip
         if status in (stepping.CROSSING, stepping.STUCK, stepping.UNSOLVABLE):
             raise TorsadeError(self._failure(status))
         return Outcome(status)

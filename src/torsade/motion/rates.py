@@ -35,13 +35,14 @@ from torsade.rod.elasticity import (
     stretch_energy,
     twist_energy,
 )
-from torsade.rod.factor import WORTH, Factor, pattern, serves
+from torsade.rod.factor import Factor, renewed, usable
 from torsade.rod.kinematics import edge_geometry, reference_twist_change
 from torsade.rod.neighbours import edge_midpoints
 
 OK = 0
 LOOSE = 1
 UNSOLVED = 2
+DENSE = 3
 
 
 class Work(NamedTuple):
@@ -230,26 +231,28 @@ def rates(
     base_tangent: Floats,
     base_twist: Floats,
     contacts: Contacts,
-    factor: Factor,
+    factor: Factor | tuple[()],
     tolerance: float,
     v: Floats,
     omega: Floats,
     angular: Floats,
     w: Work,
-) -> tuple[int, Factor]:
+) -> tuple[int, Factor | tuple[()]]:
     """Velocities v (n_nodes, 3), spins omega and rates of the material angles angular (n_edges,).
 
     v holds the starting guess. The material angle is measured from a director transported straight
     from the base tangent t0, which itself turns about t by -(t0 x t) . dt/dt / (1 + t0 . t).
-    Returns OK, LOOSE (see hold_bodies) or UNSOLVED, and the factor, renewed when it did not serve.
+    Returns OK, LOOSE (see hold_bodies), UNSOLVED or DENSE (solve without a factor), and the factor,
+    renewed when it did not serve.
     """
     forces(a, m, bc, x, theta, base_tangent, base_twist, contacts, w)
     find_drag(a, m, x, w.length, w.mid, contacts)
     if hold_bodies(a, bc, contacts, w.held, w.component) != OK:
         return LOOSE, factor
     _ground_guess(a, bc, v, w.held, w.component)
-    if not serves(factor, contacts):
-        factor = pattern(a, contacts, w.mid, m.diameter, WORTH)
+    factor = renewed(factor, a, contacts, w.mid, m.diameter)
+    if not usable(factor):
+        return DENSE, factor
     if not solve_mobility(a, m.eta_A, contacts, factor, w.force, w.held, tolerance, v, w.mobility):
         return UNSOLVED, factor
     _centre_floating(a, bc, v, w.held, w.component)
@@ -327,4 +330,4 @@ def energies(a: Assembly, m: Model, contacts: Contacts, w: Work, out: Floats) ->
     out[3] = contact_energy(a, m, w.length, w.tangent, contacts)
 
 
-compile_kernels(__name__, splice=("rates",), plain=("rate_work",))
+compile_kernels(__name__, splice=("rates",), owning=("rates",), plain=("rate_work",))

@@ -260,12 +260,12 @@ def evaluate(
     bc: Boundary,
     state: State,
     contacts: Contacts,
-    factor: Factor,
+    factor: Factor | tuple[()],
     control: Control,
     dt: float,
     stages: Index,
     g: Stages,
-) -> tuple[int, Factor]:
+) -> tuple[int, Factor | tuple[()]]:
     """Evaluate the rates as often as a job needs, into g; returns their status and the newest factor.
 
     START: at the present state. STEP: at every stage of a step dt [s] (one stage: explicit Euler); the

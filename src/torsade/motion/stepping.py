@@ -10,7 +10,7 @@ from torsade.assembly import Assembly, State
 from torsade.motion.ends import Boundary
 from torsade.motion.guard import largest_move
 from torsade.motion.near import Near, crossing, find_near, list_near
-from torsade.motion.rates import LOOSE, OK, powers
+from torsade.motion.rates import DENSE, LOOSE, OK, powers
 from torsade.motion.scheme import (
     ONE_STAGE,
     SPECTRUM,
@@ -35,6 +35,7 @@ CROSSING = 2
 STUCK = 3
 UNSOLVABLE = 4
 PAUSED = 5
+CROWDED = 6
 
 STEPS_PER_SPECTRUM = 25
 
@@ -112,6 +113,13 @@ def _next_step(control: Control, clock: Clock, until: float) -> tuple[float, boo
     return dt, False
 
 
+def _verdict(status: int) -> int:
+    """What a status of the rates other than OK means for the run."""
+    if status == LOOSE:
+        return SLIPPED
+    return CROWDED if status == DENSE else UNSOLVABLE
+
+
 def _judge(
     a: Assembly,
     state: State,
@@ -124,11 +132,11 @@ def _judge(
 ) -> tuple[float, int]:
     """Error over the tolerance of the step dt [s] in g, and a verdict.
 
-    A verdict of REACHED accepts the step; SLIPPED, CROSSING, STUCK and UNSOLVABLE refuse it.
+    A verdict of REACHED accepts the step, any other refuses it.
     """
     ratio = 0.0
     if status != OK:
-        return 8.0, SLIPPED if status == LOOSE else UNSOLVABLE
+        return 8.0, _verdict(status)
     if control.fixed_step == 0.0:
         ratio = embedded_error(state, g, dt, control.radius) / control.tolerance
     if not ratio <= 1.0:
@@ -160,13 +168,13 @@ def advance(
     until: float,
     max_steps: int,
     g: Stages,
-    factor: Factor,
+    factor: Factor | tuple[()],
 ) -> int:
     """Advance state (in place) to the time until [s] in at most max_steps steps; returns why it stopped.
 
     REACHED, PAUSED (max_steps taken), SLIPPED (a pulled body that nothing holds any more), CROSSING
-    (strands would pass through each other), STUCK (no step is short enough), UNSOLVABLE. A factor that is
-    not made yet starts it.
+    (strands would pass through each other), STUCK (no step is short enough), UNSOLVABLE, CROWDED (contacts
+    couple so much that solving without a factor is faster). The factor is one not made yet, or ().
     """
     edge_geometry(state.x, a.edges, g.length, g.tangent)
     edge_midpoints(state.x, a.edges, g.mid)
@@ -199,12 +207,15 @@ def advance(
         if job == START:
             clock.count[2] += 1
             if status != OK:
-                verdict = SLIPPED if status == LOOSE else UNSOLVABLE
+                verdict = _verdict(status)
                 break
             _take_rates(state, g)
             clock.power[0], clock.power[1] = powers(a, m, bc, g.v, g.omega, near.contacts, g.work)
             begin = False
             continue
+        if status == DENSE:
+            verdict = CROWDED
+            break
         if job == SPECTRUM:
             _take_spectrum(g, clock)
             continue
@@ -239,4 +250,6 @@ def advance(
     return verdict
 
 
-compile_kernels(__name__, splice=("_judge", "_find_near"))
+compile_kernels(
+    __name__, splice=("_judge", "_find_near"), owning=("_judge", "_find_near", "advance")
+)

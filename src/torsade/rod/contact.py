@@ -285,4 +285,4 @@ def add_drag_torques(
             spin_weight[f] += wf
 
 
-compile_kernels(__name__, inline=("contact_pressure", "_area"))
+compile_kernels(__name__, inline=("contact_pressure", "_area"), owning=("contacts_among",))

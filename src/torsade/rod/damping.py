@@ -17,7 +17,7 @@ from torsade._compile import compile_kernels
 from torsade.arrays import Bools, Floats, Index
 from torsade.assembly import Assembly
 from torsade.rod.contact import Contacts
-from torsade.rod.factor import HELD, ITERATIVE, Factor, assemble, factorise, substitute
+from torsade.rod.factor import HELD, Factor, assemble, factorise, substitute
 
 
 class MobilityWork(NamedTuple):
@@ -159,7 +159,7 @@ def solve_mobility(
     a: Assembly,
     eta_A: float,
     contacts: Contacts,
-    factor: Factor,
+    factor: Factor | tuple[()],
     force: Floats,
     fixed: Bools,
     tolerance: float,
@@ -168,10 +168,11 @@ def solve_mobility(
 ) -> bool:
     """Solve M v = F for the nodes that are not fixed; v holds a guess, and what fixed nodes do.
 
-    Solved directly in a pattern that serves, or, where that says ITERATIVE, by conjugate gradients.
+    Solved directly in a pattern that serves, or, with () in its place, by conjugate gradients (the length of
+    a tuple is known to the compiler, which leaves the other way out).
     force, v (n_nodes, 3), fixed (n_nodes,) bool. False when there is no solution.
     """
-    if factor.kind[0] == ITERATIVE:
+    if len(factor) == 0:
         return _conjugate_gradients(a, eta_A, contacts, force, fixed, tolerance, v, work)
     assemble(a, eta_A, contacts, fixed, factor)
     diagonal, prescribed = factor.diagonal, work.r

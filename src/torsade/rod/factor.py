@@ -27,15 +27,15 @@ HELD = 1e30
 """Held nodes resist so many times more than they would: exact to round-off, without another case."""
 
 UNMADE = 0
-DIRECT = 1
-ITERATIVE = 2
+MADE = 1
+DENSE = 2
 
 
 class Factor(NamedTuple):
     """A pattern, and a matrix in it or its factors; slots are places in value.
 
-    kind (1,) is UNMADE, DIRECT or ITERATIVE (factorising would take too long). order (n,) are the nodes as
-    they are eliminated; column k, that of order[k], has rows row[start[k]:start[k + 1]], in the order of
+    kind (1,) is UNMADE, MADE or DENSE (factorising would take too long). order (n,) are the nodes as they
+    are eliminated; column k, that of order[k], has rows row[start[k]:start[k + 1]], in the order of
     elimination. tape are the slots that factorising updates, in turn. edge_slot (n_edges,) couples the
     nodes of an edge, pair_slot (n_pairs, 4) start and end of one edge with start and end of the other, for
     known (n_pairs,) pairs. value holds the entries below the diagonal; diagonal, inverse (n,) are by node.
@@ -67,13 +67,13 @@ def no_factor() -> Factor:
 
 def serves(factor: Factor, contacts: Contacts) -> bool:
     """Whether the pattern holds all contacts found."""
-    if factor.kind[0] == DIRECT:
-        known, row = factor.known, contacts.row
-        for k in range(contacts.count[0]):
-            if not known[row[k]]:
-                return False
-    made: bool = factor.kind[0] != UNMADE
-    return made
+    if factor.kind[0] == UNMADE:
+        return False
+    known, row = factor.known, contacts.row
+    for k in range(contacts.count[0]):
+        if not known[row[k]]:
+            return False
+    return True
 
 
 def _near(contacts: Contacts, mid: Floats, reach: float) -> Bools:
@@ -166,16 +166,16 @@ def _tape(start: Ints, row: Slots, rank: Ints) -> Slots:
 def pattern(a: Assembly, contacts: Contacts, mid: Floats, diameter: float, worth: float) -> Factor:
     """A new pattern for edges with midpoints mid (n_edges, 3), touching below a distance diameter [m].
 
-    worth is the number of operations per node up to which it is made; beyond, it says ITERATIVE.
+    worth is the number of operations per node up to which it is made; beyond, it is DENSE and of no use.
     """
     known = _near(contacts, mid, MARGIN * diameter)
     offset, neighbour = couplings(a, contacts.pairs, known)
     n = a.node_length.shape[0]
     order, begin, size, pool, work = minimum_degree(offset, neighbour, worth * n)
     kind = np.empty(1, np.int64)
-    kind[0] = DIRECT
+    kind[0] = MADE
     if not work[0] < np.inf:
-        kind[0] = ITERATIVE
+        kind[0] = DENSE
         for i in range(n):
             order[i] = i
             size[i] = 0
@@ -183,12 +183,31 @@ def pattern(a: Assembly, contacts: Contacts, mid: Floats, diameter: float, worth
     row = _columns(order, begin, size, pool, rank, start)
     edge_slot = np.empty(a.edges.shape[0], np.uint32)
     pair_slot = np.empty((contacts.pairs.shape[0], 4), np.uint32)
-    if kind[0] == DIRECT:
+    if kind[0] == MADE:
         _place(a.edges, contacts.pairs, known, rank, start, row, edge_slot, pair_slot)
     return Factor(
         kind, order, start, row, _tape(start, row, rank), edge_slot, pair_slot, known,
         np.empty(row.shape[0]), np.empty(n), np.empty(n),
     )  # fmt: skip
+
+
+def renewed(
+    factor: Factor | tuple[()], a: Assembly, contacts: Contacts, mid: Floats, diameter: float
+) -> Factor | tuple[()]:
+    """The factor if it serves, else one for a new pattern; the empty tuple stays what it is."""
+    if len(factor) == 0:
+        return factor
+    if serves(factor, contacts):
+        return factor
+    return pattern(a, contacts, mid, diameter, WORTH)
+
+
+def usable(factor: Factor | tuple[()]) -> bool:
+    """Whether a solve is possible: iteratively, or directly."""
+    if len(factor) == 0:
+        return True
+    made: bool = factor.kind[0] == MADE
+    return made
 
 
 def assemble(a: Assembly, eta_A: float, contacts: Contacts, fixed: Bools, factor: Factor) -> None:
@@ -281,4 +300,6 @@ def substitute(factor: Factor, v: Floats) -> None:
         v[i, 2] = v2
 
 
-compile_kernels(__name__, inline=("_slot",), plain=("no_factor",))
+compile_kernels(
+    __name__, inline=("_slot",), owning=("_near", "_columns", "_tape", "pattern", "renewed"), plain=("no_factor",)
+)

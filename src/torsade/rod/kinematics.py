@@ -122,4 +122,6 @@ def spread_directors(hinges: Ints, tangent: Floats, reference_twist: Floats, dir
             director[b, 2] = c * moved[2] + s * (t[0] * moved[1] - t[1] * moved[0])
 
 
-compile_kernels(__name__, inline=("_half_solid_angle", "small_atan", "transport"))
+compile_kernels(
+    __name__, inline=("_half_solid_angle", "small_atan", "transport"), owning=("spread_directors",)
+)

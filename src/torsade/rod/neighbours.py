@@ -144,4 +144,6 @@ def near_rows(pairs: Ints, mid: Floats, reach: float, rows: Ints) -> int:
     return count
 
 
-compile_kernels(__name__, inline=("_bucket",))
+compile_kernels(
+    __name__, inline=("_bucket",), owning=("_first", "near_points", "neighbour_pairs", "without_excluded")
+)

@@ -183,4 +183,6 @@ def minimum_degree(offset: Ints, neighbour: Ints, most: float) -> Elimination:
     return Elimination(order, begin, size, pool, work)
 
 
-compile_kernels(__name__, inline=("_couple", "_link", "_unlink"))
+compile_kernels(
+    __name__, inline=("_couple", "_link", "_unlink"), owning=("_filled", "couplings", "minimum_degree")
+)
