@@ -69,9 +69,9 @@ def test_energy_never_grows_by_itself(seed, ratio):
 def test_work_is_stored_or_dissipated(drive):
     """W_ext = dissipation + change of energy, to the step tolerance.
 
-    Both integrals are trapezoids over steps whose local error, of third order, is the tolerance: ten times
-    finer means steps 2.15 times shorter and an imbalance 4.6 times smaller. At the default tolerance it
-    is below 2 %, from the first crushing of contacts that start deep.
+    Both integrals are taken by the scheme itself, of second order, with steps whose local error, of third
+    order, is the tolerance: ten times finer means steps 2.15 times shorter and an imbalance 4.6 times
+    smaller. What there is comes from the first crushing of contacts that start deep.
     """
     imbalance = []
     for tolerance in (1e-2, 1e-3, 1e-4):
@@ -80,8 +80,9 @@ def test_work_is_stored_or_dissipated(drive):
         assert motion.advance(30 * TAU) is Outcome.REACHED
         stored = motion.energies().total - start
         imbalance.append(abs(motion.external_work - motion.dissipation - stored) / motion.dissipation)
-    assert imbalance[1] < 2e-2
-    assert imbalance[2] < 4e-3
+    assert imbalance[0] < 3e-2
+    assert imbalance[1] < 8e-3
+    assert imbalance[2] < 2e-3
     assert imbalance[2] < imbalance[1] / 2.5 < imbalance[0] / 2.5**2
 
 

@@ -185,7 +185,7 @@ class Motion:
             how.roam * radius,
             how.move * radius,
         )
-        self._clock = stepping.Clock(np.zeros(5), np.zeros(2), np.zeros(5, np.int64), np.zeros(2, np.int64))
+        self._clock = stepping.Clock(np.zeros(5), np.zeros(5, np.int64), np.zeros(2, np.int64))
         self._scratch = scheme.stage_work(assembly)
 
     @property

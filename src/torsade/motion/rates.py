@@ -290,36 +290,57 @@ def powers(
 ) -> tuple[float, float]:
     """External power and dissipated power [W] at the rates just computed.
 
-    External power is that of forces, torques and held ends. Dissipation is v . M v, the damping of spin
-    and what the collision drag takes from it.
+    External power is that of forces, torques and held ends. Dissipation is v . M v and its like for spin:
+    where nothing is held, drag balances the forces, so it is v . F; held nodes and turned edges matter
+    only when they move.
     """
-    drag, force, torque = w.mobility.q, w.force, w.torque
-    drag_torque, spin_weight, tangent = w.drag_torque, w.spin_weight, w.tangent
-    held, pull, turned, moment = bc.held, bc.force, bc.turned, bc.torque
-    apply_drag(a, m.eta_A, contacts, v, drag)
+    force, held, pull = w.force, bc.held, bc.force
+    torque, turned, moment = w.torque, bc.turned, bc.torque
     external = 0.0
     dissipated = 0.0
+    moved = False
     for i in range(v.shape[0]):
         for c in range(3):
-            dissipated += v[i, c] * drag[i, c]
-            support = drag[i, c] - force[i, c] if held[i] else 0.0
-            external += v[i, c] * (pull[i, c] + support)
+            external += v[i, c] * pull[i, c]
+            dissipated += 0.0 if held[i] else v[i, c] * force[i, c]
+            moved = moved or (held[i] and v[i, c] != 0.0)
+    spun = False
     for e in range(omega.shape[0]):
-        own = spin_weight[e] * omega[e] - drag_torque[e]
-        dissipated += omega[e] * own
-        support = own - torque[e] if turned[e] else 0.0
-        external += omega[e] * (moment[e] + support)
+        external += omega[e] * moment[e]
+        dissipated += 0.0 if turned[e] else omega[e] * torque[e]
+        spun = spun or (turned[e] and omega[e] != 0.0)
+    if moved:
+        drag = w.mobility.q
+        apply_drag(a, m.eta_A, contacts, v, drag)
+        for i in range(v.shape[0]):
+            for c in range(3):
+                lost = v[i, c] * drag[i, c] if held[i] else 0.0
+                dissipated += lost
+                external += lost - v[i, c] * force[i, c] if held[i] else 0.0
+    if spun:
+        lost = _turning_power(a, m.eta_J, omega, turned, w)
+        dissipated += lost
+        external += lost
+        for e in range(omega.shape[0]):
+            external -= omega[e] * torque[e] if turned[e] else 0.0
+    return external, dissipated
+
+
+def _turning_power(a: Assembly, eta_J: float, omega: Floats, turned: Bools, w: Work) -> float:
+    """Power [W] that turned edges spend on the damping of spin and on collision drag."""
+    drag_torque, spin_weight, tangent = w.drag_torque, w.spin_weight, w.tangent
     hinges, hinge_length = a.hinges, a.hinge_length
+    lost = 0.0
+    for e in range(omega.shape[0]):
+        lost += omega[e] * (spin_weight[e] * omega[e] - drag_torque[e]) if turned[e] else 0.0
     for k in range(hinges.shape[0]):
         p = hinges[k, 0]
         q = hinges[k, 1]
-        rate = m.eta_J / hinge_length[k]
+        rate = eta_J / hinge_length[k]
         c = tangent[p, 0] * tangent[q, 0] + tangent[p, 1] * tangent[q, 1] + tangent[p, 2] * tangent[q, 2]
-        on_p = rate * (omega[p] - c * omega[q]) * omega[p]
-        on_q = rate * (omega[q] - c * omega[p]) * omega[q]
-        dissipated += on_p + on_q
-        external += (on_p if turned[p] else 0.0) + (on_q if turned[q] else 0.0)
-    return external, dissipated
+        lost += rate * (omega[p] - c * omega[q]) * omega[p] if turned[p] else 0.0
+        lost += rate * (omega[q] - c * omega[p]) * omega[q] if turned[q] else 0.0
+    return lost
 
 
 def energies(a: Assembly, m: Model, contacts: Contacts, w: Work, out: Floats) -> None:

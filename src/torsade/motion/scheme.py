@@ -16,7 +16,7 @@ from torsade._compile import compile_kernels
 from torsade.arrays import Floats, Index
 from torsade.assembly import Assembly, State
 from torsade.motion.ends import Boundary
-from torsade.motion.rates import OK, Work, rate_work, rates
+from torsade.motion.rates import OK, Work, powers, rate_work, rates
 from torsade.rod.contact import Contacts, Model
 from torsade.rod.factor import Factor
 
@@ -51,7 +51,8 @@ class Stages(NamedTuple):
     """Scratch of a run: the newest stage (x, theta) and two before it, with rates v, angular, omega.
 
     v0, angular0 are the rates at the start of the step; table (MAX_STAGES + 1, 5) holds the weights of
-    a step's stages; tangent, length, mid belong to the last completed step; searched and listed (n_nodes,
+    a step's stages; ledger (5, 2) external work and dissipation [J] since the start of the step, of the
+    newest stage and two before it, and their powers [W] at the newest stage and at the start; tangent, length, mid belong to the last completed step; searched and listed (n_nodes,
     3) are positions when pairs were last looked for and last listed; estimate[0] the spectral radius [1/s],
     estimate[1] the number of evaluations it took.
     """
@@ -73,6 +74,7 @@ class Stages(NamedTuple):
     searched: Floats
     listed: Floats
     table: Floats
+    ledger: Floats
     estimate: Floats
     work: Work
 
@@ -99,6 +101,7 @@ def stage_work(a: Assembly) -> Stages:
         np.empty((n, 3)),
         np.empty((n, 3)),
         np.empty((MAX_STAGES + 1, 5)),
+        np.zeros((5, 2)),
         np.zeros(2),
         rate_work(a),
     )
@@ -185,6 +188,15 @@ def _next_stage(weights: Floats, state: State, g: Stages) -> None:
         p2[e] = p1[e]
         p1[e] = p[e]
         p[e] = c0 * p0[e] + c1 * p1[e] + c2 * p2[e] + cv * r[e] + cv0 * r0[e]
+
+
+def _next_entry(weights: Floats, ledger: Floats) -> None:
+    """External work and dissipation until the next stage, integrated as positions are."""
+    c1, c2, cv, cv0 = weights[1], weights[2], weights[3], weights[4]
+    for c in range(2):
+        ledger[2, c] = ledger[1, c]
+        ledger[1, c] = ledger[0, c]
+        ledger[0, c] = c1 * ledger[1, c] + c2 * ledger[2, c] + cv * ledger[3, c] + cv0 * ledger[4, c]
 
 
 def _seed_mode(mode_x: Floats, mode_theta: Floats) -> None:
@@ -276,26 +288,36 @@ def evaluate(
     _prepare(job, state, g)
     if job == STEP:
         chebyshev_table(stages, dt, g.table)
+        for c in range(2):
+            g.ledger[0, c] = 0.0
+            g.ledger[1, c] = 0.0
+            g.ledger[3, c] = g.ledger[4, c]
     most = stages if job == STEP else (12 if job == SPECTRUM else 1)
+    x, theta, v, omega, angular = g.x, g.theta, g.v, g.omega, g.angular
+    tangent, ledger, estimate, work = g.tangent, g.ledger, g.estimate, g.work
+    twist = state.reference_twist
     for k in range(most):
         displaced = 0.0
         if job == STEP:
             _next_stage(g.table[k + 1], state, g)
+            _next_entry(g.table[k + 1], ledger)
         elif job == SPECTRUM:
             displaced = _perturb(state, control.radius, g)
-            copy(g.v0, g.v)
+            copy(g.v0, v)
         status, factor = rates(
-            a, m, bc, g.x, g.theta, g.tangent, state.reference_twist, contacts, factor,
-            control.solver_tolerance, g.v, g.omega, g.angular, g.work,
+            a, m, bc, x, theta, tangent, twist, contacts, factor, control.solver_tolerance,
+            v, omega, angular, work,
         )  # fmt: skip
-        g.estimate[1] = k + 1.0
+        estimate[1] = k + 1.0
         if status != OK:
             return status, factor
         if job == SPECTRUM:
-            previous = g.estimate[0]
-            g.estimate[0] = _response(control.radius, displaced, g)
-            if k > 1 and abs(g.estimate[0] - previous) < 0.05 * g.estimate[0]:
+            previous = estimate[0]
+            estimate[0] = _response(control.radius, displaced, g)
+            if k > 1 and abs(estimate[0] - previous) < 0.05 * estimate[0]:
                 return OK, factor
+        else:
+            ledger[3, 0], ledger[3, 1] = powers(a, m, bc, v, omega, contacts, work)
     return OK, factor
 
 

@@ -10,7 +10,7 @@ from torsade.assembly import Assembly, State
 from torsade.motion.ends import Boundary
 from torsade.motion.guard import largest_move
 from torsade.motion.near import Near, crossing, find_near, list_near
-from torsade.motion.rates import DENSE, LOOSE, OK, powers
+from torsade.motion.rates import DENSE, LOOSE, OK
 from torsade.motion.scheme import (
     ONE_STAGE,
     SPECTRUM,
@@ -24,7 +24,7 @@ from torsade.motion.scheme import (
     evaluate,
     stages_for,
 )
-from torsade.rod.contact import Contacts, Model
+from torsade.rod.contact import Model
 from torsade.rod.factor import Factor
 from torsade.rod.kinematics import carry_directors, edge_geometry, spread_directors
 from torsade.rod.neighbours import edge_midpoints
@@ -44,13 +44,11 @@ class Clock(NamedTuple):
     """What a run carries from step to step, in arrays so that kernels can write them.
 
     time (5,): t [s], next step [s], external work [J], dissipation [J], spectral radius [1/s].
-    power (2,): external and dissipated power [W] at the start of the step.
     count (5,): steps, refused steps, evaluations of the rates, neighbour lists made, steps since the
     spectral radius was estimated. culprit (2,): the edges that stopped the run.
     """
 
     time: Floats
-    power: Floats
     count: Ints  # type: ignore[assignment]  # hides tuple.count
     culprit: Ints
 
@@ -73,6 +71,8 @@ def _take_rates(state: State, g: Stages) -> None:
     copy_flat(g.omega, state.omega)
     copy(g.v, g.v0)
     copy_flat(g.omega, g.angular0)
+    for c in range(2):
+        g.ledger[4, c] = g.ledger[3, c]
 
 
 def _find_near(a: Assembly, m: Model, control: Control, state: State, g: Stages, clock: Clock) -> Near:
@@ -90,16 +90,6 @@ def _take_spectrum(g: Stages, clock: Clock) -> None:
     clock.count[4] = 0
     if clock.time[1] <= 0.0:
         clock.time[1] = 1.0 / clock.time[4]
-
-
-def _count_work(
-    a: Assembly, m: Model, bc: Boundary, contacts: Contacts, dt: float, g: Stages, clock: Clock
-) -> None:
-    """Add external work and dissipation of the step dt [s] that has led to the rates in g."""
-    supplied, lost = powers(a, m, bc, g.v, g.omega, contacts, g.work)
-    clock.time[2] += 0.5 * dt * (clock.power[0] + supplied)
-    clock.time[3] += 0.5 * dt * (clock.power[1] + lost)
-    clock.power[0], clock.power[1] = supplied, lost
 
 
 def _next_step(control: Control, clock: Clock, until: float) -> tuple[float, bool]:
@@ -210,7 +200,6 @@ def advance(
                 verdict = _verdict(status)
                 break
             _take_rates(state, g)
-            clock.power[0], clock.power[1] = powers(a, m, bc, g.v, g.omega, near.contacts, g.work)
             begin = False
             continue
         if status == DENSE:
@@ -235,7 +224,8 @@ def advance(
         if adaptive:
             _adapt(tried, dt, ratio, 1.0 if again else 2.0, clock)
         again = False
-        _count_work(a, m, bc, near.contacts, dt, g, clock)
+        clock.time[2] += g.ledger[0, 0]
+        clock.time[3] += g.ledger[0, 1]
         _commit(a, state, g)
         moved = largest_move(g.listed, state.x)
         begin = moved > 0.5 * control.skin  # a fixed step that outran the list: find contacts again
