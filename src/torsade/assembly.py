@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from torsade.arrays import Bools, Floats, Ints
+from torsade.curve import rotation_minimising_frames
 from torsade.errors import TorsadeError
 
 
@@ -157,34 +158,10 @@ def initial_state(assembly: Assembly, strands: Sequence[Floats]) -> State:
     """
     x = np.ascontiguousarray(np.concatenate([np.asarray(s, float) for s in strands]))
     n_edges = len(assembly.edges)
-    director = np.empty((n_edges, 3))
-    theta = np.zeros(n_edges)
+    frames = [rotation_minimising_frames(s, bool(c)) for s, c in zip(strands, assembly.closed, strict=True)]
     twist = np.zeros(len(assembly.hinges))
-    e = x[assembly.edges[:, 1]] - x[assembly.edges[:, 0]]
-    t = e / np.linalg.norm(e, axis=1, keepdims=True)
-    for f in range(len(assembly.closed)):
-        first, last = assembly.edge_start[f], assembly.edge_start[f + 1]
-        director[first] = _perpendicular(t[first])
-        for k in range(first + 1, last):
-            director[k] = _transported(director[k - 1], t[k - 1], t[k])
+    for f, frame in enumerate(frames):
         if assembly.closed[f]:
-            moved = _transported(director[last - 1], t[last - 1], t[first])
-            sine = t[first] @ np.cross(moved, director[first])
-            twist[assembly.hinge_start[f]] = np.arctan2(sine, moved @ director[first])
-    return State(x, theta, director, twist, np.zeros_like(x), np.zeros(n_edges))
-
-
-def _perpendicular(t: Floats) -> Floats:
-    axis = np.zeros(3)
-    axis[np.argmin(np.abs(t))] = 1.0
-    u = axis - (axis @ t) * t
-    return np.asarray(u / np.linalg.norm(u))
-
-
-def _transported(u: Floats, a: Floats, b: Floats) -> Floats:
-    """Parallel transport of u from tangent a to tangent b (one vector; setting up needs no kernel)."""
-    c = np.cross(a, b)
-    cosine = a @ b
-    v = cosine * u + np.cross(c, u) + c * (c @ u) / (1.0 + cosine)
-    v -= (v @ b) * b
-    return np.asarray(v / np.linalg.norm(v))
+            twist[assembly.hinge_start[f]] = -frame.holonomy
+    director = np.ascontiguousarray(np.concatenate([frame.u for frame in frames]))
+    return State(x, np.zeros(n_edges), director, twist, np.zeros_like(x), np.zeros(n_edges))

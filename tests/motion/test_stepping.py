@@ -10,8 +10,9 @@ import pytest
 from rod.helpers import toy_model
 from torsade.assembly import assemble, initial_state
 from torsade.errors import TorsadeError
-from torsade.motion import ends
+from torsade.motion import ends, stepping
 from torsade.motion.overdamped import Motion, Outcome, Stepping
+from torsade.rod.factor import no_factor
 
 TAU = 0.01  # eta/E of the toy material [s]
 
@@ -157,3 +158,18 @@ def test_time_does_not_go_back():
         motion.advance(0.5 * TAU)
     assert motion.time == TAU
     assert np.array_equal(motion.state.x, before.x)
+
+
+@pytest.mark.slow
+def test_an_iterative_solve_gives_the_same_motion():
+    """Without a factor the system is solved by conjugate gradients; a tight tolerance shows no difference."""
+    ends_at = []
+    for factor in (no_factor(), ()):
+        motion = smooth_motion(Stepping(solver_tolerance=1e-12))
+        clock, scratch = motion._clock, motion._scratch
+        stepping.advance(
+            motion.assembly, motion.model, motion.boundary, motion.control, motion.state, clock, TAU, 10**6,
+            scratch, factor,
+        )  # fmt: skip
+        ends_at.append(motion.state.x.copy())
+    assert np.abs(ends_at[1] - ends_at[0]).max() < 1e-8

@@ -240,6 +240,4 @@ def advance(
     return verdict
 
 
-compile_kernels(
-    __name__, splice=("_judge", "_find_near"), owning=("_judge", "_find_near", "advance")
-)
+compile_kernels(__name__, splice=("_judge", "_find_near"), owning=("_judge", "_find_near", "advance"))

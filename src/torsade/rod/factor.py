@@ -301,5 +301,8 @@ def substitute(factor: Factor, v: Floats) -> None:
 
 
 compile_kernels(
-    __name__, inline=("_slot",), owning=("_near", "_columns", "_tape", "pattern", "renewed"), plain=("no_factor",)
+    __name__,
+    inline=("_slot",),
+    owning=("_near", "_columns", "_tape", "pattern", "renewed"),
+    plain=("no_factor",),
 )
