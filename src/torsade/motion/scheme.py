@@ -52,9 +52,10 @@ class Stages(NamedTuple):
 
     v0, angular0 are the rates at the start of the step; table (MAX_STAGES + 1, 5) holds the weights of
     a step's stages; ledger (5, 2) external work and dissipation [J] since the start of the step, of the
-    newest stage and two before it, and their powers [W] at the newest stage and at the start; tangent, length, mid belong to the last completed step; searched and listed (n_nodes,
-    3) are positions when pairs were last looked for and last listed; estimate[0] the spectral radius [1/s],
-    estimate[1] the number of evaluations it took.
+    newest stage and two before it, and their powers [W] at the newest stage and at the start; tangent,
+    length, mid belong to the last completed step; searched and listed (n_nodes, 3) are positions when
+    pairs were last looked for and last listed; estimate[0] the spectral radius [1/s], estimate[1] the
+    number of evaluations it took.
     """
 
     x: Floats

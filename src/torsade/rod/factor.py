@@ -70,10 +70,10 @@ def serves(factor: Factor, contacts: Contacts) -> bool:
     if factor.kind[0] == UNMADE:
         return False
     known, row = factor.known, contacts.row
+    missing = 0
     for k in range(contacts.count[0]):
-        if not known[row[k]]:
-            return False
-    return True
+        missing += not known[row[k]]
+    return missing == 0
 
 
 def _near(contacts: Contacts, mid: Floats, reach: float) -> Bools:
