@@ -396,6 +396,25 @@ def test_touching_edges_are_refused(name: str) -> None:
     assert "touch" in refused(x, False, writhe_density)
 
 
+@settings(max_examples=200, deadline=None)
+@given(
+    seed=st.integers(0, 10**6),
+    places=st.tuples(*[st.sampled_from([0.0, 1.0, 0.5, 1e-4, 0.3])] * 2),
+    gap=st.sampled_from([0.0, 1e-15, 1e-12, 9e-10]),
+    sizes=st.tuples(*[st.floats(-2, 2)] * 2),
+    parallel=st.booleans(),
+)
+def test_no_touching_edges_are_missed(
+    seed: int, places: tuple[float, float], gap: float, sizes: tuple[float, float], parallel: bool
+) -> None:
+    """Edges of any lengths, across or along each other, that meet anywhere or nearly do."""
+    e, f, off = random_directions(seed, 3)
+    e, f = e * 10 ** sizes[0], (e if parallel else f) * 10 ** sizes[1]
+    p = -places[0] * e
+    q = -places[1] * f + gap * (10 ** sizes[0] + 10 ** sizes[1]) * off
+    assert "curve 0 and edge 0 of curve 1 touch" in refused([[p, p + e], [q, q + f]], False, linking)
+
+
 def test_touching_curves_are_refused_where_it_matters() -> None:
     """Linking asks for curves apart; a curve that touches itself can be linked all the same."""
     x, y = hopf_link(8)

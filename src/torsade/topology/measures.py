@@ -92,7 +92,7 @@ def writhe_density(curves: Curves, closed: bool | Sequence[bool], threads: int |
     of `writhe`.
     """
     p = polygons(curves, closed)
-    s = _soup(p)
+    s = _pack(p)
     density = np.zeros(s.first[-1])
     for a in range(len(p.curves)):
         for block in [_before(s, a), *(_block(s, a, b) for b in range(len(p.curves)))]:
@@ -100,7 +100,7 @@ def writhe_density(curves: Curves, closed: bool | Sequence[bool], threads: int |
     return density
 
 
-class _Soup(NamedTuple):
+class _Packed(NamedTuple):
     """All curves in the arrays that kernels take.
 
     Edge k joins nodes k and k + 1. Curve a has the edges from start[a] to before start[a] + n_edges; the edge
@@ -126,7 +126,7 @@ class _Block(NamedTuple):
     end: Ints
 
 
-def _soup(p: Polygons) -> _Soup:
+def _pack(p: Polygons) -> _Packed:
     corners = [p.corners(k) for k in range(len(p.curves))]
     x = np.concatenate(corners).T
     # A power of two changes no digit, and keeps sixth powers of distances within the range of numbers.
@@ -134,10 +134,10 @@ def _soup(p: Polygons) -> _Soup:
     e = np.diff(nodes, axis=1)
     edges = np.concatenate([e, (e * e).sum(axis=0)[None]])
     count = np.array([len(c) for c in corners])
-    return _Soup(nodes, edges, np.cumsum([0, *count]), np.cumsum([0, *(count - 1)]), p.closed)
+    return _Packed(nodes, edges, np.cumsum([0, *count]), np.cumsum([0, *(count - 1)]), p.closed)
 
 
-def _block(s: _Soup, a: int, b: int) -> _Block:
+def _block(s: _Packed, a: int, b: int) -> _Block:
     """Pairs of the edges of curve a with those of curve b, or with later ones of its own: each pair once."""
     first, last = s.rows(a)
     start, stop = s.rows(b)
@@ -148,7 +148,7 @@ def _block(s: _Soup, a: int, b: int) -> _Block:
     return _Block(first, np.minimum(np.arange(first, last) + 2, end), end)
 
 
-def _before(s: _Soup, a: int) -> _Block:
+def _before(s: _Packed, a: int) -> _Block:
     """Pairs of the edges of curve a with earlier ones of its own."""
     first, last = s.rows(a)
     begin = np.full(last - first, first)
@@ -165,7 +165,7 @@ class _Matrices(NamedTuple):
 
 def _matrices(p: Polygons, threads: int | None, selves: bool = True) -> _Matrices:
     """Sum over the pairs of edges of every two curves; of each with itself too if selves says so."""
-    s, count = _soup(p), len(p.curves)
+    s, count = _pack(p), len(p.curves)
     found = _Matrices(np.zeros((count, count)), np.zeros((count, count)))
     for a in range(count):
         for b in range(a + (not selves), count):
@@ -176,7 +176,7 @@ def _matrices(p: Polygons, threads: int | None, selves: bool = True) -> _Matrice
     return found
 
 
-def _row_sums(s: _Soup, block: _Block, threads: int | None) -> Floats:
+def _row_sums(s: _Packed, block: _Block, threads: int | None) -> Floats:
     """Sums of Omega/2 and of |Omega|/2 over every row of a block, shape (n_rows, 2)."""
     rows = len(block.begin)
     sums, suspects = np.zeros((rows, 2)), np.zeros(rows, np.int64)
@@ -203,7 +203,7 @@ def _threads(asked: int | None, pairs: int) -> int:
     return (asked or os.cpu_count() or 1) if pairs >= WORTH_THREADS else 1
 
 
-def _refuse_touching(s: _Soup, block: _Block, suspect: int) -> None:
+def _refuse_touching(s: _Packed, block: _Block, suspect: int) -> None:
     """Find the nearest two edges of a block, and refuse them if they touch; suspect is a row where some may.
 
     Raises:
