@@ -34,7 +34,7 @@ def numbers(found: Any) -> list[float]:
     return [float(found)] if isinstance(found, int | float) else []
 
 
-@pytest.mark.parametrize("name", ["step", "kernels", "mobility", "start", "bends", "convergence"])
+@pytest.mark.parametrize("name", ["step", "kernels", "mobility", "start", "bends", "convergence", "writhe"])
 def test_quick_mode_finds_finite_numbers(script: Any, name: str, capsys: pytest.CaptureFixture[str]) -> None:
     found = script(name).main(["--quick", "--json"])
     printed = json.loads(capsys.readouterr().out)

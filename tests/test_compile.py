@@ -62,6 +62,7 @@ def test_kernels_run_as_plain_python():
         "rod/test_damping.py::test_bodies_apart_float_each_on_its_own",
         "rod/test_factor.py::test_pattern_is_that_of_the_factors",
         "rod/test_neighbours.py::test_cells_that_share_a_bucket",
+        "topology/test_measures.py::test_six_stick_trefoil",
         "motion/test_rates.py::test_pulled_straight_fiber_stretches_uniformly",
         "motion/test_stepping.py::test_times_are_reached_exactly",
         "motion/test_guard.py::test_first_crossing_finds_the_first_pair_of_the_list",

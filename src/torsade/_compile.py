@@ -27,7 +27,7 @@ register: Any = event.register
 njit: Any = numba.njit
 
 PACKAGE = Path(__file__).parent
-KERNEL_SOURCES = ("_compile.py", "assembly.py", "rod", "motion")
+KERNEL_SOURCES = ("_compile.py", "assembly.py", "topology", "rod", "motion")
 
 
 def source_hash() -> str:
