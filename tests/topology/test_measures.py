@@ -38,7 +38,7 @@ from torsade.topology.measures import (
     writhe_density,
     writhe_matrix,
 )
-from torsade.topology.projection import directional_crossing_number, directional_writhe
+from torsade.topology.views import directional_crossing_number, directional_writhe
 
 SHARED = Path(os.environ.get("TORSADE_SHARED", Path(__file__).resolve().parents[3] / "shared"))
 

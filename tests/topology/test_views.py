@@ -10,11 +10,11 @@ import pytest
 from topology.curves import around, hopf_link, random_directions, random_polygon, ring, torus_knot
 from torsade.arrays import Floats
 from torsade.errors import TorsadeError
-from torsade.topology.projection import (
+from torsade.topology.views import (
     directional_crossing_number,
     directional_writhe,
     total_curvature,
-    whitney_index,
+    turning_number,
 )
 
 ABOVE = (0.0, 0.0, 1.0)
@@ -51,18 +51,18 @@ def test_turning_number_of_a_curve_that_goes_round_often(times: int) -> None:
     t = around(90)
     r = 2 + np.cos(t)
     x = np.stack([r * np.cos(times * t), r * np.sin(times * t), np.sin(t)], axis=1)
-    assert whitney_index(x, True) == pytest.approx(times, abs=1e-13)
-    assert whitney_index(x[::-1], True) == pytest.approx(-times, abs=1e-13)
-    assert whitney_index(x, True, np.negative(ABOVE)) == pytest.approx(-times, abs=1e-13)
+    assert turning_number(x, True) == pytest.approx(times, abs=1e-13)
+    assert turning_number(x[::-1], True) == pytest.approx(-times, abs=1e-13)
+    assert turning_number(x, True, np.negative(ABOVE)) == pytest.approx(-times, abs=1e-13)
 
 
 def test_turning_number_of_an_eight_and_of_arcs() -> None:
     """A figure eight has none; half a ring of 41 corners turns 39 of its 40 equal parts of half a turn."""
-    assert whitney_index(figure_eight(), True) == pytest.approx(0, abs=1e-13)
+    assert turning_number(figure_eight(), True) == pytest.approx(0, abs=1e-13)
     t = np.linspace(0, np.pi, 41)
     arc = np.stack([np.cos(t), np.sin(t), t], axis=1)
-    assert whitney_index(arc, False) == pytest.approx(39 / 40 / 2, abs=1e-13)
-    assert whitney_index(arc[:2], False) == 0.0
+    assert turning_number(arc, False) == pytest.approx(39 / 40 / 2, abs=1e-13)
+    assert turning_number(arc[:2], False) == 0.0
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -70,7 +70,7 @@ def test_turning_numbers_are_whole_and_odd_with_an_even_number_of_crossings(seed
     """Whitney 1937: crossings and turning number of a closed plane curve differ by an odd number."""
     x = random_polygon(seed, 9)
     for direction in random_directions(seed, 20):
-        turns = whitney_index(x, True, direction)
+        turns = turning_number(x, True, direction)
         assert turns == pytest.approx(round(turns), abs=1e-12)
         assert (round(turns) + directional_crossing_number(x, True, direction)) % 2 == 1
 
@@ -104,10 +104,10 @@ def test_views_in_which_nothing_can_be_told_are_refused() -> None:
     flat = [[-1, 0, 0], [1, 0, 0], [1, 1, 0.4], [0, 1, 0], [0, -1, 0]]
     assert "edges 0 and 3 are seen to touch" in refused(directional_writhe, flat, False, ABOVE)
     assert "edge 1 is seen as a point" in refused(
-        whitney_index, [[0, 0, 0], [1, 0, 0], [1, 0, 1], [2, 2, 2]], False
+        turning_number, [[0, 0, 0], [1, 0, 0], [1, 0, 1], [2, 2, 2]], False
     )
     folded = [[0, 0, 0], [1, 0, 0], [0.5, 0, 1], [0, 1, 0]]
-    assert "fold straight back at node 1 along" in refused(whitney_index, folded, False)
-    assert "fold straight back at node 1 along" in refused(whitney_index, folded, True)
+    assert "fold straight back at node 1 along" in refused(turning_number, folded, False)
+    assert "fold straight back at node 1 along" in refused(turning_number, folded, True)
     for none in ((0, 0, 0), (np.nan, 0, 1), (1, 0)):
         assert "is no direction" in refused(directional_writhe, ring(), True, none)

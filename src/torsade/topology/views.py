@@ -12,7 +12,7 @@ from torsade.arrays import Floats, Ints
 from torsade.errors import TorsadeError
 from torsade.topology.polygons import Curves, Polygons, polygon, polygons, unit_direction
 
-__all__ = ["directional_crossing_number", "directional_writhe", "total_curvature", "whitney_index"]
+__all__ = ["directional_crossing_number", "directional_writhe", "total_curvature", "turning_number"]
 
 
 def directional_writhe(curves: Curves, closed: bool | Sequence[bool], direction: ArrayLike) -> int:
@@ -33,7 +33,7 @@ def directional_crossing_number(curves: Curves, closed: bool | Sequence[bool], d
     return len(_crossing_signs(polygons(curves, closed), direction))
 
 
-def whitney_index(x: ArrayLike, closed: bool, direction: ArrayLike = (0.0, 0.0, 1.0)) -> float:
+def turning_number(x: ArrayLike, closed: bool, direction: ArrayLike = (0.0, 0.0, 1.0)) -> float:
     """Turning number of a curve seen along a direction that points to the eye, counterclockwise positive.
 
     The sum of the angles in (-pi, pi) by which the projected edges turn, over 2 pi: the degree of the tangent
@@ -55,7 +55,7 @@ def total_curvature(x: ArrayLike, closed: bool, direction: ArrayLike | None = No
     """Sum of the turning angles of a curve [rad], in space or, given a direction, as seen along it.
 
     In space it is the mean of what is seen over all directions (Fáry 1949). Arguments and errors are those
-    of `whitney_index`.
+    of `turning_number`.
     """
     x = polygon(x, closed)
     if direction is None:
