@@ -1,0 +1,75 @@
+"""Walks through bare ports, before there is a diagram: directions of strands, connected pieces."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+__all__ = ["CIRCLE", "connected", "oriented"]
+
+CIRCLE = 1 << 30
+"""Stands in the starts of a diagram for a strand that is a circle without crossings."""
+
+
+def oriented(
+    mate: Sequence[int], starts: Iterable[int], m: int
+) -> tuple[list[int], dict[int, int], bytearray]:
+    """Directions for the strands of a graph, as for `Diagram.assemble`.
+
+    Args:
+        mate: the port that each port faces; the last m are those of ends.
+        starts: where strands begin.
+        m: how many ends there are.
+
+    Returns:
+        The start of each strand; its last port (an end, or the port of its last entry), by its start; and
+        for each port whether a strand enters there.
+    """
+    entry = bytearray(len(mate))
+    last: dict[int, int] = {}
+    begun: list[int] = []
+
+    def known(s: int) -> bool:
+        return bool(entry[s] or (s in last if s < 0 else entry[s ^ 2]))
+
+    def run(start: int) -> None:
+        p = start
+        while p >= 0 and (p := mate[p ^ 2]) != start:
+            pass
+        start = p  # the end of an open strand, wherever in it we were told to start
+        begun.append(start)
+        while True:
+            q = mate[p]
+            entry[q] = 1
+            p = q ^ 2
+            if q < 0 or p == start:
+                break
+        last[start] = q
+
+    for s in starts:
+        if s == CIRCLE:
+            begun.append(s)
+        elif not known(s):
+            run(s)
+    for s in range(-m, len(mate) - m):
+        if not known(s):
+            run(s if s < 0 else s ^ 2)
+    return begun, last, entry
+
+
+def connected(mate: Sequence[int], m: int) -> list[list[int]]:
+    """The ports of each connected piece, sorted; all that touches an end is one piece, and comes first."""
+    seen: set[int] = set()
+    pieces = []
+    for first in range(-m, len(mate) - m):
+        if first in seen:
+            continue
+        piece = {first} if first >= 0 else set(range(-m, 0))
+        todo = list(piece)
+        while todo:
+            p = todo.pop()
+            near = [mate[p]] if p < 0 else [mate[p], p & ~3 | p + 1 & 3]
+            todo += [q for q in near if q not in piece]
+            piece.update(near)
+        seen |= piece
+        pieces.append(sorted(piece))
+    return pieces

@@ -1,0 +1,29 @@
+"""Codes of diagrams, in and out.
+
+| code | in | out |
+| --- | --- | --- |
+| PD | `from_pd` | `to_pd`, and `to_open_pd` for tangles |
+| Gauss, signed or not | `from_gauss` | `to_gauss`, `to_unsigned_gauss` |
+| Dowker-Thistlethwaite | `from_dt` | `to_dt` |
+| braid word | `from_braid` | |
+| Conway notation | `from_conway` | |
+"""
+
+from torsade.topology.codes.braid import from_braid
+from torsade.topology.codes.conway import from_conway
+from torsade.topology.codes.dowker import from_dt, to_dt
+from torsade.topology.codes.gauss import from_gauss, to_gauss, to_unsigned_gauss
+from torsade.topology.codes.pd import from_pd, to_open_pd, to_pd
+
+__all__ = [
+    "from_braid",
+    "from_conway",
+    "from_dt",
+    "from_gauss",
+    "from_pd",
+    "to_dt",
+    "to_gauss",
+    "to_open_pd",
+    "to_pd",
+    "to_unsigned_gauss",
+]

@@ -1,0 +1,71 @@
+"""From loosely joined ports to a planar diagram: where the ends lie, and a refusal if it cannot be drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from torsade.errors import TorsadeError
+from torsade.topology.diagram import Diagram
+
+__all__ = ["drawn", "ends_around"]
+
+
+def drawn(
+    mate: Sequence[int],
+    starts: Iterable[int],
+    ends: Sequence[str],
+    boundary: Iterable[str] | None,
+    what: str,
+) -> Diagram:
+    """The diagram of ports whose ends may stand in any order, with its ends as they come around it.
+
+    Args:
+        mate: as in `Diagram`, with the ends in the order of `ends`.
+        starts: as in `Diagram`.
+        ends: names of the ends, in any order.
+        boundary: these names, counterclockwise; found from the drawing if none are given. Pieces that
+            are not connected then follow one another in the order of `ends`.
+        what: what the code is, for the error message.
+    """
+    m = len(ends)
+    if boundary is None:
+        order = [end for block in ends_around(mate, m) for end in block]
+    else:
+        order = _named(ends, list(boundary))
+    place = {p: k - m for k, p in enumerate(order)}
+    new = [place.get(p, p) for p in mate[: len(mate) - m]] + [place.get(mate[p], mate[p]) for p in order]
+    diagram = Diagram.assemble(new, [place.get(s, s) for s in starts], [ends[p] for p in order])
+    if diagram.genus:
+        where = f" with ends {' '.join(diagram.ends)} around it" if m else ""
+        raise TorsadeError(
+            f"the {what} cannot be drawn in the plane{where}: its graph needs a surface of genus "
+            f"{diagram.genus}; check the order of labels, and the signs"
+        )
+    return diagram
+
+
+def ends_around(mate: Sequence[int], m: int) -> list[list[int]]:
+    """The ends of each piece as they lie around it, counterclockwise, wherever they stand in `mate`."""
+    seen: set[int] = set()
+    blocks = []
+    for first in range(-m, 0):
+        if first in seen:
+            continue
+        clockwise, end = [first], first
+        while True:
+            p = end
+            while (q := mate[p]) >= 0:
+                p = q & ~3 | q - 1 & 3  # around the face on the left, until it comes to an end
+            if q in clockwise:
+                break
+            clockwise.append(q)
+            end = q
+        seen.update(clockwise)
+        blocks.append([first, *clockwise[:0:-1]])
+    return blocks
+
+
+def _named(ends: Sequence[str], boundary: list[str]) -> list[int]:
+    if sorted(boundary) != sorted(ends):
+        raise TorsadeError(f"the boundary is {boundary}; give each of the ends {sorted(ends)} once")
+    return [list(ends).index(name) - len(ends) for name in boundary]
