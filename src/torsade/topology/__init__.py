@@ -1,0 +1,1 @@
+"""Diagrams of knots and links, and what can be computed from them; nothing here knows of mechanics."""
