@@ -168,6 +168,13 @@ def test_a_knot_beyond_the_table() -> None:
     assert str(found) == "unknown"
 
 
+def test_a_diagram_that_is_too_wide_has_no_name() -> None:
+    """The torus knot T(13, 14): no error, and the reason says what to do."""
+    found = identify_pd(*braid(list(range(1, 13)) * 14))
+    assert (found.names, found.certain) == ((), False)
+    assert found.reason.endswith("simplify it first")
+
+
 def test_torus_knots_beyond_the_table() -> None:
     assert identify_pd(*braid([1] * 11)).names == ()
     assert identify_pd(*braid([1, 2, 3] * 5)).names == ()
@@ -244,7 +251,30 @@ def test_sutures() -> None:
             assert list(identify_pd(connected_sum(*pds)).names) == row["closed_loop_knot"]
 
 
+# --- another program
+
+
+def test_names_agree_with_snappy() -> None:
+    """Complements of hyperbolic knots are those of SnapPy's census under the same name.
+
+    There 10_83 and 10_86 change places, and from 10_162 on numbers are one higher (Perko's pair).
+    """
+    snappy = pytest.importorskip("snappy")
+    numbers = {"10_83": "10_86", "10_86": "10_83"} | {f"10_{k}": f"10_{k + 1}" for k in range(162, 166)}
+    for name, pd in KNOTS.items():
+        complement = snappy.Link(pd).exterior()
+        if complement.volume() > 1:
+            assert complement.is_isometric_to(snappy.Manifold(numbers.get(name, name))), name
+
+
 # --- links
+
+
+def test_links_that_are_their_own_mirror_images() -> None:
+    """SnapPy finds isometries for the hyperbolic ones; L2a1 is plain, L8n8 has both strands doubled."""
+    names = {link.name for link in prime_links()}
+    own = {name for name in link_codes() if "m" + name not in names}
+    assert own == {"L2a1", "L6a2", "L6a4", "L8a9", "L8a19", "L8a20", "L8n8"}
 
 
 @pytest.mark.parametrize("name", list(link_codes()))
@@ -266,6 +296,7 @@ def test_links_of_the_table(name: str) -> None:
         ([-1] * 4, "mL4a1"),
         ([1, -2] * 3, "L6a4"),
         ([1, 2] * 3, "L6n1"),
+        ([2, 1, 3, 2] * 2, "L8n8"),
         ([1, 1, 2, 2], "L2a1#L2a1"),
         ([1, 1, 1, 2, 2], "3_1#L2a1"),
         ([1, 1, 1, -2, -2, -2, 3, 3], "3_1#m3_1#L2a1"),

@@ -9,8 +9,8 @@ result says so.
 
 Names are those of the table (`table`): "3_1" is the right-handed trefoil, "m3_1" its mirror image. "#" joins
 the factors of a sum, "⊔" split pieces. Orientations are left out: a knot and its reverse have one name, and
-so have links that differ in orientation only. Of links, also, a sum is named without saying which of their
-components are joined, and a link that its invariants do not tell from its mirror image has one name with it.
+so have links that differ in orientation only. A sum of links is named without saying which of their
+components are joined.
 """
 
 from __future__ import annotations
@@ -96,4 +96,8 @@ def identify_pd(pd: Sequence[Sequence[int]] | Code, circles: int = 0) -> Identit
 
 
 def _match(part: Code) -> Match:
-    return match_knot(part) if part.n_components == 1 else match_link(part)
+    """What a prime diagram can be; one that is too wide for its invariants has no name."""
+    try:
+        return match_knot(part) if part.n_components == 1 else match_link(part)
+    except TorsadeError as error:
+        return Match((), False, str(error))

@@ -7,7 +7,8 @@ signature and Lk the sum of linking numbers,
 
 for reversing a component whose linking with the rest is lambda multiplies V by t^(-3 lambda), adds
 2 lambda to sigma and takes it twice from Lk (K. Murasugi, On the signature of links, Topology 9 (1970) 283);
-and what each component is on its own, with its linking numbers up to sign.
+what each component is on its own, with its linking numbers up to sign; and of three components the product
+of their linking numbers, in which the signs cancel.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from itertools import combinations
 
 from torsade.topology.invariants import Code, Laurent, jones, signature
 from torsade.topology.invariants.laurent import ONE
@@ -36,6 +38,7 @@ Profile = tuple[tuple[str, tuple[int, ...]], ...]
 class LinkType:
     """An unoriented link: its name, size, and what is compared.
 
+    `triangles` are the products of linking numbers of three components, other than 0, in order.
     A sum is named without saying which components are joined, so it has several `profiles`.
     """
 
@@ -44,6 +47,7 @@ class LinkType:
     n_components: int
     polynomial: Laurent
     signature: int
+    triangles: tuple[int, ...]
     profiles: frozenset[Profile]
 
 
@@ -57,12 +61,14 @@ def link_type(name: str, code: Code) -> LinkType | None:
             return None
         profile.append((component, tuple(sorted(abs(x) for x in row if x))))
     total = sum(sum(row) for row in table) // 2
+    products = (table[i][j] * table[j][k] * table[k][i] for i, j, k in combinations(range(len(table)), 3))
     return LinkType(
         name,
         len(code.crossings),
         code.n_components,
         jones(code).shifted(Fraction(-3 * total, 2)),
         signature(code) + total,
+        tuple(sorted(product for product in products if product)),
         frozenset([tuple(sorted(profile))]),
     )
 
@@ -91,7 +97,8 @@ def match_link(code: Code) -> Match:
 
 def _may_be(one: LinkType, two: LinkType) -> bool:
     """Have both the same invariants?"""
-    same = (one.polynomial, one.signature) == (two.polynomial, two.signature)
+    numbers = one.polynomial, one.signature, one.triangles
+    same = numbers == (two.polynomial, two.signature, two.triangles)
     return same and not one.profiles.isdisjoint(two.profiles)
 
 
@@ -110,11 +117,11 @@ def prime_links() -> tuple[LinkType, ...]:
 def _all_links(n_components: int) -> tuple[LinkType, ...]:
     """Every link of so many components, split ones too, through `LINK_CROSSINGS` crossings."""
     primes = [
-        LinkType(knot.name, knot.crossings, 1, knot.jones, knot.signature, _alone(knot.name))
+        LinkType(knot.name, knot.crossings, 1, knot.jones, knot.signature, (), _alone(knot.name))
         for knot in entries()
         if knot.crossings <= LINK_CROSSINGS
     ]
-    unknot = LinkType(UNKNOT, 0, 1, ONE, 0, _alone(UNKNOT))
+    unknot = LinkType(UNKNOT, 0, 1, ONE, 0, (), _alone(UNKNOT))
     sums = list(_sums([*primes, *prime_links()], n_components, LINK_CROSSINGS))
     return tuple(_unions([unknot, *sums], n_components, LINK_CROSSINGS))
 
@@ -136,6 +143,7 @@ def _sums(primes: list[LinkType], components: int, crossings: int, first: int = 
                     one.n_components + rest.n_components - 1,
                     one.polynomial * rest.polynomial,
                     one.signature + rest.signature,
+                    tuple(sorted(one.triangles + rest.triangles)),
                     frozenset(p for a in one.profiles for b in rest.profiles for p in _joined(a, b)),
                 )
 
@@ -164,5 +172,6 @@ def _unions(parts: list[LinkType], components: int, crossings: int, first: int =
                 components,
                 one.polynomial * rest.polynomial * _LOOP,
                 one.signature + rest.signature,
+                tuple(sorted(one.triangles + rest.triangles)),
                 frozenset(tuple(sorted(a + b)) for a in one.profiles for b in rest.profiles),
             )

@@ -3,8 +3,9 @@
 It holds a PD code and invariants of each of the 249 prime knots through 10 crossings, and PD codes of the
 prime links through 8 crossings. A name stands for the knot that its code draws, and m before it for the
 mirror image, unless the two are the same. The codes of knots are KnotInfo's (C. Livingston, A. H. Moore,
-knotinfo.org), in whose pictures 3_1 is the right-handed trefoil; links are numbered as in Thistlethwaite's
-table, with the codes of Spherogram. `tools/make_knot_table.py` makes the file from the codes.
+knotinfo.org), in whose pictures 3_1 is the right-handed trefoil. Numbers are KnotInfo's too: in SnapPy's
+census 10_83 and 10_86 change places, and 10_162 to 10_165 are one higher. Links are numbered as in
+Thistlethwaite's table, with the codes of Spherogram. `tools/make_knot_table.py` makes the file from codes.
 """
 
 from __future__ import annotations

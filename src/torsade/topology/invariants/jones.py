@@ -16,10 +16,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from torsade.errors import TorsadeError
 from torsade.topology.invariants.code import Code, Crossing, oriented
 from torsade.topology.invariants.laurent import ZERO, Laurent
 
 __all__ = ["jones"]
+
+_WIDEST = 20
+"""The greatest number of loose edges: 16,796 planar ways to join them, a minute for 250 crossings."""
 
 _ALL_STARTS = 40  # with more crossings, only as many of them are tried as a start
 
@@ -31,15 +35,19 @@ def jones(pd: Sequence[Sequence[int]] | Code, circles: int = 0) -> Laurent:
 
     V(unknot) = 1 and t^-1 V(L+) - t V(L-) = (t^(1/2) - t^(-1/2)) V(L0): that of the right-handed trefoil
     is t + t^3 - t^4. Links with an even number of components have half-integer exponents.
+
+    Raises:
+        TorsadeError: a diagram so wide that this would take minutes.
     """
     code = oriented(pd, circles)
     n = len(code.crossings)
     if not n + code.circles:
         return ZERO
     # With x = A^2, every crossing brings x^3 or x^2, of which x^2 A is taken back below, and keeps powers
-    # of x positive, since a crossing closes at most two loops, each -(x + 1/x). No coefficient exceeds
-    # the number of states, 2^n, times that of terms in up to n + 1 factors of two terms.
-    bits = 2 * n + 4
+    # of x positive, since a crossing closes at most two loops, each -(x + 1/x). With one loop for 1, a
+    # piece's bracket is a sum of one power of A for each spanning tree of its checkerboard graph
+    # (M. B. Thistlethwaite, Topology 26 (1987) 297), of which there are fewer than 2^crossings.
+    bits = n + len(code.pieces) + 2
     bracket = Laurent.unpacked(_bracket(code, bits), bits)
     return _normalised(bracket, n, code)
 
@@ -98,21 +106,25 @@ def _order(crossings: tuple[Crossing, ...]) -> list[int]:
     for c, edges in enumerate(crossings):
         for edge in edges:
             at.setdefault(edge, []).append(c)
-    best: tuple[int, list[int]] = 0, []
-    for start in range(0, n, 1 + n // _ALL_STARTS):
-        cost, order = _greedy(crossings, at, start)
-        if not best[1] or cost < best[0]:
-            best = cost, order
-    return best[1]
+    found = (_greedy(crossings, at, start) for start in range(0, n, 1 + n // _ALL_STARTS))
+    _, widest, order = min(found, default=(0, 0, []))
+    if widest > _WIDEST:
+        raise TorsadeError(
+            f"a diagram of {n} crossings is {widest} strands wide, more than the {_WIDEST} that the Jones "
+            "polynomial is computed for; simplify it first"
+        )
+    return order
 
 
-def _greedy(crossings: tuple[Crossing, ...], at: dict[int, list[int]], start: int) -> tuple[int, list[int]]:
-    """From a start, always next the crossing that has most edges loose already; and the sum of 2^width."""
+def _greedy(
+    crossings: tuple[Crossing, ...], at: dict[int, list[int]], start: int
+) -> tuple[int, int, list[int]]:
+    """Sum of 2^width, greatest width, and the order that always adds the crossing held most already."""
     loose_at = [0] * len(crossings)
     loose: set[int] = set()
     left = set(range(len(crossings)))
     order: list[int] = []
-    cost, c = 0, start
+    cost, widest, c = 0, 0, start
     while True:
         order.append(c)
         left.discard(c)
@@ -121,6 +133,7 @@ def _greedy(crossings: tuple[Crossing, ...], at: dict[int, list[int]], start: in
             for other in at[edge]:
                 loose_at[other] += 1
         cost += 1 << len(loose)
+        widest = max(widest, len(loose))
         if not left:
-            return cost, order
+            return cost, widest, order
         c = max(left, key=loose_at.__getitem__)
