@@ -1,0 +1,253 @@
+"""The counting rules of a pulled knot: crossings, twist fluctuation and circulation (thesis 4.5, 4.6).
+
+Every strand runs towards its pulled end. A right-handed crossing then turns both strands one way, a
+left-handed one the other (charge q = +1 or -1): opposite charges lock, equal ones let strands roll.
+Edges that run around a face the same way slide along each other. Both are counts on a drawing; tau does
+not change where a drawing is changed by moves that keep every crossing's sign, Gamma does.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+
+from torsade.errors import TorsadeError
+from torsade.topology.canonical import canonical_form
+from torsade.topology.diagram import Diagram
+from torsade.topology.moves import (
+    add_bigon,
+    bigons,
+    fingers,
+    kinks,
+    remove_bigon,
+    remove_kink,
+    slide_triangle,
+    triangles,
+)
+
+__all__ = [
+    "Face", "Range", "State", "circulation_range", "pull_choices", "state", "twist_fluctuation", "whitney_index"
+]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Face:
+    """A face of a drawing: its edges, how many more run counterclockwise than clockwise, and where it is."""
+
+    edges: int
+    circulation: int
+    bounded: bool
+
+    @property
+    def energy(self) -> Fraction:
+        """Its share |C|/e of the circulation energy."""
+        return Fraction(abs(self.circulation), self.edges) if self.edges else Fraction(0)
+
+
+@dataclass(frozen=True)
+class State:
+    """What is counted on an oriented drawing.
+
+    Attributes:
+        crossings: N.
+        charges: sign of every crossing, right-handed +1.
+        faces: all faces, unbounded ones among them.
+        whitney: sum of the senses of the loops left when every crossing is smoothed, counterclockwise +1.
+        loops: how many such loops there are.
+    """
+
+    crossings: int
+    charges: tuple[int, ...]
+    faces: tuple[Face, ...]
+    whitney: int
+    loops: int
+
+    @property
+    def writhe(self) -> int:
+        """Wr: the sum of all charges."""
+        return sum(self.charges)
+
+    @property
+    def tau(self) -> float:
+        """Twist fluctuation energy per crossing (4.12): 1 - (Wr/N)^2, and 0 without crossings."""
+        return float(1 - Fraction(self.writhe, self.crossings) ** 2) if self.crossings else 0.0
+
+    @property
+    def gamma(self) -> float:
+        """Circulation energy (4.19), the sum of |C|/e over bounded faces."""
+        return float(sum((face.energy for face in self.faces if face.bounded), Fraction(0)))
+
+    @property
+    def gamma_with_outer(self) -> float:
+        """The same over all faces, unbounded ones included."""
+        return float(sum((face.energy for face in self.faces), Fraction(0)))
+
+
+def twist_fluctuation(charges: Iterable[int]) -> tuple[float, float, float]:
+    """tau in the three forms of the thesis (4.12 and below it), which are equal.
+
+    The mean square of q - mean q; 1 - (Wr/N)^2; and as an interaction, 1 - 1/N - (2/N^2) sum of q_i q_j
+    over pairs.
+
+    Raises:
+        TorsadeError: there are no charges.
+    """
+    q = list(charges)
+    n = len(q)
+    if n == 0:
+        raise TorsadeError("there are no crossings; twist fluctuation is a mean over crossings: give some")
+    mean = Fraction(sum(q), n)
+    pairs = (sum(q) ** 2 - sum(c * c for c in q)) // 2
+    spread = sum(((c - mean) ** 2 for c in q), Fraction(0)) / n
+    return float(spread), float(1 - mean**2), float(1 - Fraction(1, n) - Fraction(2 * pairs, n * n))
+
+
+def state(diagram: Diagram, pulled: str | Iterable[str] | None = None) -> State:
+    """Count on a drawing, its strands running as they do or towards the pulled ends.
+
+    Args:
+        diagram: of a knot, link or tangle.
+        pulled: names of the pulled ends, as in `Diagram.pulled`.
+    """
+    drawn = diagram if pulled is None else diagram.pulled(pulled)
+    faces = tuple(
+        Face(len(face), drawn.circulation(f), drawn.is_bounded(f)) for f, face in enumerate(drawn.faces)
+    )
+    loops = len(drawn.seifert_circles)
+    return State(drawn.n_crossings, drawn.signs, faces, whitney_index(drawn), loops)
+
+
+def pull_choices(diagram: Diagram) -> Iterator[tuple[str, ...]]:
+    """Every choice of one end of each open strand to pull, the second ends first.
+
+    >>> from torsade.topology.tangle import integer
+    >>> list(pull_choices(integer(2)))[0]
+    ('A1', 'B1')
+    """
+    tips: dict[str, list[str]] = {}
+    for name in sorted(diagram.ends, reverse=True):
+        tips.setdefault(name.rstrip("0123456789"), []).append(name)
+    yield from product(*(tips[strand] for strand in sorted(tips)))
+
+
+def whitney_index(diagram: Diagram) -> int:
+    """Sum of the senses of the loops left when every crossing is smoothed, counterclockwise +1.
+
+    For a closed drawing in the plane this is the degree of its tangent map (Whitney 1937); arcs that lead
+    from end to end are left out. Circles without crossings count as counterclockwise.
+    """
+    regions = _regions(diagram)
+    sides: list[tuple[int, int]] = []
+    for curve in (*diagram.seifert_circles, *diagram.seifert_arcs):
+        if curve:
+            tail, head = diagram.edges[curve[0]]
+            sides.append((regions[diagram.face_at[tail]], regions[diagram.face_at[head]]))
+    loops = sum(1 for curve in diagram.seifert_circles if curve)
+    outside = {regions[f] for f in diagram.outer_faces}
+    index = diagram.circles
+    for k in range(loops):
+        left, right = sides[k]
+        index += 1 if _reaches(right, outside, sides[:k] + sides[k + 1 :]) else -1
+    return index
+
+
+def _regions(diagram: Diagram) -> list[int]:
+    """The region in which each face lies when every crossing is smoothed.
+
+    Smoothing joins the face between the two strands that come in with that between the two that go out.
+    """
+    region = list(range(len(diagram.faces)))
+
+    def find(f: int) -> int:
+        while region[f] != f:
+            f = region[f]
+        return f
+
+    for c in range(diagram.n_crossings):
+        # The corner counterclockwise after port p is the face on the left of dart p.
+        outgoing = [p for p in range(4 * c, 4 * c + 4) if diagram.is_tail(p)]
+        between_out = next(p for p in outgoing if diagram.ccw(p) in outgoing)
+        between_in = between_out ^ 2
+        a, b = find(diagram.face_at[between_out]), find(diagram.face_at[between_in])
+        region[max(a, b)] = min(a, b)
+    return [find(f) for f in range(len(region))]
+
+
+def _reaches(start: int, outside: set[int], sides: Iterable[tuple[int, int]]) -> bool:
+    """Whether a region is connected to one outside across curves with these regions on their sides."""
+    across: dict[int, set[int]] = {}
+    for left, right in sides:
+        across.setdefault(left, set()).add(right)
+        across.setdefault(right, set()).add(left)
+    reached, queue = {start}, deque([start])
+    while queue:
+        region = queue.popleft()
+        if region in outside:
+            return True
+        for other in across.get(region, ()):
+            if other not in reached:
+                reached.add(other)
+                queue.append(other)
+    return False
+
+
+@dataclass(frozen=True)
+class Range:
+    """Gamma over drawings of one tangle: least and greatest value, how many drawings, and whether all.
+
+    drawings counts those with the least number of crossings found; complete is False when the search was
+    stopped at its limit.
+    """
+
+    least: float
+    greatest: float
+    crossings: int
+    drawings: int
+    complete: bool
+
+
+def circulation_range(
+    diagram: Diagram, pulled: str | Iterable[str] | None = None, extra: int = 2, limit: int = 2000
+) -> Range:
+    """Gamma over the drawings with fewest crossings that Reidemeister moves reach.
+
+    Args:
+        diagram: where to start.
+        pulled: names of the pulled ends, as in `Diagram.pulled`.
+        extra: how many crossings more than the fewest found a drawing on the way may have.
+        limit: how many drawings to look at, at most.
+    """
+    begun = diagram if pulled is None else diagram.pulled(pulled)
+    found = {canonical_form(begun, plane=True): begun}
+    queue, looked = deque([begun]), 0
+    fewest = begun.n_crossings
+    while queue and looked < limit:
+        drawing = queue.popleft()
+        looked += 1
+        for new in _moved(drawing, fewest + extra):
+            form = canonical_form(new, plane=True)
+            if form not in found:
+                found[form] = new
+                # Drawings with fewer crossings are looked at first.
+                (queue.append if new.n_crossings >= drawing.n_crossings else queue.appendleft)(new)
+                fewest = min(fewest, new.n_crossings)
+    minimal = [d for d in found.values() if d.n_crossings == fewest]
+    gamma = [state(d).gamma for d in minimal]
+    return Range(min(gamma), max(gamma), fewest, len(minimal), not queue)
+
+
+def _moved(diagram: Diagram, most: int) -> Iterator[Diagram]:
+    """Drawings one move away, with at most so many crossings."""
+    for dart in kinks(diagram):
+        yield remove_kink(diagram, dart)
+    for dart in bigons(diagram):
+        yield remove_bigon(diagram, dart)
+    for dart in triangles(diagram):
+        yield slide_triangle(diagram, dart)
+    if diagram.n_crossings + 2 <= most:
+        for dart, other in fingers(diagram):
+            yield add_bigon(diagram, dart, other, over=True)
+            yield add_bigon(diagram, dart, other, over=False)
