@@ -336,6 +336,10 @@ class Diagram(PlanarMap):
             raise TorsadeError(f"pulled ends are {ends!r}; give one of each open strand, {choices}")
         return self.reverse(k for k, two in tips.items() if two[0] in wanted)
 
+    def without_circles(self) -> Diagram:
+        """The same diagram without its circles that cross nothing."""
+        return replace(self, starts=tuple(s for s in self.starts if s != CIRCLE))
+
     def renamed(self, ends: Iterable[str]) -> Diagram:
         """The same diagram with other names of its ends, counterclockwise."""
         names = tuple(ends)

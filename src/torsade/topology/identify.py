@@ -15,29 +15,28 @@ components are joined.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Protocol
 
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
+
+from torsade.curve import perpendicular
 from torsade.errors import TorsadeError
+from torsade.topology.codes import to_pd
+from torsade.topology.diagram import Diagram
 from torsade.topology.factor import summands
 from torsade.topology.invariants import Code, oriented
 from torsade.topology.links import match_link
 from torsade.topology.lookup import Match, match_knot
 from torsade.topology.names import prime_factors, split_union, sum_name
+from torsade.topology.projection import project
+from torsade.topology.simplify import simplify
 
-__all__ = ["Drawing", "Identity", "identify", "identify_pd"]
-
-
-class Drawing(Protocol):
-    """A diagram: an oriented PD code, and a number of components that cross nothing."""
-
-    @property
-    def pd(self) -> Sequence[Sequence[int]]: ...
-
-    @property
-    def circles(self) -> int: ...
+__all__ = ["Identity", "OpenIdentity", "identify", "identify_curves", "identify_open", "identify_pd"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,9 +63,86 @@ class Identity:
         return " or ".join(self.names) or "unknown"
 
 
-def identify(diagram: Drawing) -> Identity:
-    """Which knot or link a diagram is; simplify it first, since fewer crossings leave less open."""
-    return identify_pd(diagram.pd, diagram.circles)
+def identify(diagram: Diagram, patience: int = 100) -> Identity:
+    """Which knot or link a closed diagram is; it is simplified first, since fewer crossings leave less open.
+
+    Args:
+        diagram: of a knot or a link.
+        patience: how long to look for fewer crossings, as in `simplify`.
+
+    Raises:
+        TorsadeError: the diagram has open strands.
+    """
+    if diagram.ends:
+        raise TorsadeError(
+            f"the diagram has ends {' '.join(diagram.ends)}; only closed curves are knots: close it first, or "
+            "use `identify_open` on a curve"
+        )
+    simpler = simplify(diagram, patience)
+    return identify_pd(to_pd(simpler.without_circles()), simpler.circles)
+
+
+def identify_curves(curves: Sequence[ArrayLike]) -> Identity:
+    """Which knot or link closed polylines are, each of shape (n, 3) without repeating its first node."""
+    return identify(project(curves, True).diagram)
+
+
+@dataclass(frozen=True, slots=True)
+class OpenIdentity:
+    """What an open curve is, closed at infinity in many directions.
+
+    Attributes:
+        fractions: for each answer, by name, the fraction of directions that give it, most frequent first.
+        directions: how many there were.
+    """
+
+    fractions: dict[str, float]
+    directions: int
+
+    @property
+    def name(self) -> str:
+        """The most frequent answer."""
+        return next(iter(self.fractions))
+
+
+def identify_open(x: ArrayLike, directions: int = 100, seed: int = 0) -> OpenIdentity:
+    """Which knot an open curve is, its ends led to infinity in one direction and joined there.
+
+    An open curve is a knot only as far as the way of closing it does not matter; many directions, evenly
+    spread over the sphere and turned at random, show how far it does (Millett, Dobay and Stasiak 2005).
+
+    Args:
+        x: nodes [m], shape (n, 3).
+        directions: how many.
+        seed: of the rotation of the directions.
+
+    Raises:
+        TorsadeError: no direction, or nodes that `project` refuses.
+    """
+    if directions < 1:
+        raise TorsadeError(f"{directions} directions are asked for; give at least one")
+    nodes = np.asarray(x, dtype=np.float64)
+    project([nodes])  # refuses what is no curve
+    size = 10.0 * float(np.ptp(nodes, axis=0).max())
+    counts: Counter[str] = Counter()
+    for u in _spread(directions, seed):
+        closed = np.concatenate([nodes, nodes[-1:] + size * u, nodes[:1] + size * u])
+        counts[str(identify(project([closed], True, direction=_beside(u)).diagram, patience=20))] += 1
+    return OpenIdentity({name: n / directions for name, n in counts.most_common()}, directions)
+
+
+def _spread(n: int, seed: int) -> NDArray[np.float64]:
+    """n unit vectors, shape (n, 3), evenly spread on a spiral over the sphere, which is turned at random."""
+    z = 1 - (2 * np.arange(n) + 1) / n
+    angle = np.pi * (3 - np.sqrt(5)) * np.arange(n)
+    r = np.sqrt(1 - z * z)
+    spiral = np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
+    return np.asarray(spiral @ Rotation.random(rng=np.random.default_rng(seed)).as_matrix())
+
+
+def _beside(u: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A direction near u, along which what is led to infinity is seen to be short."""
+    return np.asarray(u + 0.05 * perpendicular(u))
 
 
 def identify_pd(pd: Sequence[Sequence[int]] | Code, circles: int = 0) -> Identity:
