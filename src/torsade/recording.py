@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import platform
+import shutil
 import time
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
@@ -14,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from torsade import __version__, store
+from torsade import __version__, places, store
 from torsade.arrays import Floats
 from torsade.assembly import Assembly, State
 from torsade.errors import TorsadeError
@@ -62,7 +63,7 @@ class Recording:
     checkpoint : state and clock at the last of them, None before the first
     wall : computing time so far [s]
     complete : whether there is nothing left to do
-    part : the growing folder on disk, or None
+    part : the growing folder on disk, under a name of its own until it holds a frame, or None
     """
 
     def __init__(
@@ -93,6 +94,7 @@ class Recording:
         self.wall = 0.0
         self.part: Path | None = None
         self._out: Path | None = None
+        self._lock: places.Lock | None = None
         self._written = 0
         self._flushed = -np.inf
         self._derive: Callable[[dict[str, Floats]], dict[str, Floats]] = lambda history: {}
@@ -112,8 +114,8 @@ class Recording:
     ) -> Recording:
         """A new recording, or with resume the one that an interrupted run of the same left at `out`.
 
-        attrs must hold all that tells one run from another; derive gives the histories that follow from
-        those recorded.
+        Close it when the run ends, however it does. attrs must hold all that tells one run from another;
+        derive gives the histories that follow from those recorded.
         """
         recording = cls(assembly, frames, names, attrs)
         recording._derive = derive
@@ -125,39 +127,64 @@ class Recording:
             return recording
         if resume and recording._is_complete(Path(out)):
             return recording
-        recording._out = store.check_target(out, overwrite)
-        part = store.part_of(recording._out)
-        if resume and store.has_restart(part):
-            recording._go_on(part)
-        else:
-            recording.attrs["done"] = 0
-            store.create(recording._dataset(frames), part)
-        recording.part = part
+        recording._out = places.check_target(out, overwrite)
+        recording._lock = places.Lock(recording._out)
+        try:
+            recording._start(places.part_of(recording._out), frames, resume, overwrite)
+        except BaseException:
+            recording.close()
+            raise
         return recording
+
+    def _start(self, part: Path, frames: int, resume: bool, overwrite: bool) -> None:
+        """Take over the growing folder that is there, or make one under a name of its own."""
+        found = places.attributes(part) or {}
+        done = int(found.get("done", 0))
+        if done and resume:
+            self._go_on(part, found)
+            return
+        if done and not overwrite:
+            raise TorsadeError(
+                f"{str(part)!r} holds {done} frames of an interrupted run; add --resume (resume=True) to go "
+                "on or --overwrite (overwrite=True) to begin anew"
+            )
+        self.attrs["done"] = 0
+        self.part = places.private(part, "new")
+        store.create(self._dataset(frames), self.part)
 
     def _is_complete(self, out: Path) -> bool:
         """Whether the same run stands complete at `out`; its frames are then taken over."""
-        found = store.attributes(out)
-        if found is None or store.part_of(out).exists():
+        found = places.attributes(out)
+        if found is None or found.get("status") != "complete" or places.part_of(out).exists():
             return False
         _same_run(self.attrs, found, out)
         self._out, self.complete = out, True
         return True
 
-    def _go_on(self, part: Path) -> None:
+    def _go_on(self, part: Path, found: Mapping[str, Any]) -> None:
         """Take over the frames and the state of an interrupted run."""
-        found = store.attributes(part) or {}
         _same_run(self.attrs, found, part)
-        saved = store.read_restart(part)
-        self.done = self._written = int(saved["done"])
-        self.wall = float(saved["wall"])
-        state = State(*(saved[name] for name in State._fields))
-        self.checkpoint = Checkpoint(state, saved["clock_time"], saved["clock_counts"])
         self.attrs["created"] = found["created"]
-        store.set_attributes(part, {"done": self.done, "status": "running"})
-        before = Result.open(part).dataset
-        for name, values in self._arrays.items():
-            values[: self.done] = before[name].values
+        self.part = part
+        if found["status"] == "complete":  # only its name is missing
+            assert self._out is not None
+            store.complete(part, self._out, int(found["done"]), {})
+            self.complete = True
+        elif store.has_restart(part):
+            saved = store.read_restart(part, (*State._fields, "clock_time", "clock_counts", "done", "wall"))
+            self.done = self._written = int(saved["done"])
+            self.wall = float(saved["wall"])
+            state = State(*(saved[name] for name in State._fields))
+            self.checkpoint = Checkpoint(state, saved["clock_time"], saved["clock_counts"])
+            store.set_attributes(part, {"done": self.done, "status": "running"})
+            before = Result.open(part).dataset
+            for name, values in self._arrays.items():
+                values[: self.done] = before[name].values
+        else:
+            raise TorsadeError(
+                f"{str(part)!r} holds {found['done']} frames, but no state to go on from; open it for the "
+                "frames, or give --overwrite (overwrite=True) in place of resume to begin anew"
+            )
 
     def add(self, frame: Frame, checkpoint: Checkpoint, wall: float) -> None:
         """Record a frame, with the state behind it and the computing time so far [s]."""
@@ -184,26 +211,40 @@ class Recording:
         progress = {"done": np.array(self.done), "wall": np.array(self.wall)}
         store.write_restart(self.part, self.checkpoint.state._asdict() | clock | progress)
         store.set_attributes(self.part, self._progress())
+        self._settle()
         self._written = self.done
         self._flushed = time.monotonic()
+
+    def _settle(self) -> None:
+        """With a frame on disk, the folder takes the place where others look for it."""
+        assert self._out is not None
+        part = places.part_of(self._out)
+        if self.part is not None and self.part != part:
+            places.replace(self.part, part)
+            self.part = part
 
     def stop(self, status: str) -> None:
         """Save what there is of a run that did not come to its end, and why it did not."""
         self.attrs["status"] = status
         if self.part is not None and self.done == 0:
-            store.discard(self.part)
+            shutil.rmtree(self.part, ignore_errors=True)
             self.part = None
         self.flush()
 
     def finish(self, numbers: Mapping[str, float]) -> Result:
         """The result of a run that came to its end, with the numbers that belong to it as a whole."""
-        self.attrs.update({"status": "complete"} | dict(numbers))
         self.flush()
+        self.attrs.update({"status": "complete"} | dict(numbers))
         self.attrs.update(self._progress())
         if self.part is not None and self._out is not None:
             store.complete(self.part, self._out, self.done, self.attrs)
         self.complete = True
         return self.result()
+
+    def close(self) -> None:
+        """Let other processes write to the same place."""
+        if self._lock is not None:
+            self._lock.release()
 
     def result(self) -> Result:
         """The frames so far as a result."""
@@ -229,22 +270,23 @@ class Recording:
 
 def _same_run(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) -> None:
     """Refuse to go on with the frames of another run, naming the first thing that differs."""
+    anew = "give --overwrite (overwrite=True) in place of resume to begin anew"
     mine, theirs = json.loads(asked["spec"]), json.loads(found["spec"])
     for name in sorted(mine.keys() | theirs.keys()):
-        if mine.get(name) != theirs.get(name):
+        # A centerline may have been moved; what it says is in the hash of the start.
+        if mine.get(name) != theirs.get(name) and not (name == "centerline" and name in mine.keys() & theirs):
             raise TorsadeError(
                 f"{str(path)!r} was begun with {name} = {theirs.get(name)!r}, not {mine.get(name)!r}; "
-                "resume with the same specification, or run without resume to begin anew"
+                f"resume with the same specification, or {anew}"
             )
     if asked["start"] != found.get("start"):
         raise TorsadeError(
-            f"{str(path)!r} was begun from other node positions; give the same centerline, or run without "
-            "resume to begin anew"
+            f"{str(path)!r} was begun from other node positions; give the same centerline, or {anew}"
         )
 
 
 def _now() -> str:
-    return datetime.now(UTC).isoformat(timespec="seconds")
+    return datetime.now(UTC).isoformat(timespec="microseconds")
 
 
 def _versions() -> dict[str, str]:

@@ -130,7 +130,11 @@ def test_resuming_something_else_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ts.TorsadeError, match=r"was begun with force = 15.0, not 14.0; resume with the same"):
         other.run(out=out, resume=True)
     assert ts.open(tmp_path / "reef.zarr.part").frames == 2
-    assert other.run(out=out).complete  # without resume it begins anew
+    with pytest.raises(ts.TorsadeError, match=r"holds 2 frames of an interrupted run; add --resume"):
+        other.run(out=out)
+    assert ts.open(tmp_path / "reef.zarr.part").frames == 2
+    assert other.run(out=out, overwrite=True).complete
+    assert [p.name for p in tmp_path.iterdir()] == ["reef.zarr"]
 
 
 def test_a_complete_run_is_not_run_again(tmp_path: Path) -> None:

@@ -224,6 +224,10 @@ class Spec(BaseModel, ABC):
             return None
         return STANDARD_SPACING * self.h if self.spacing is None else self.spacing
 
+    def stored(self) -> dict[str, Any]:
+        """The fields as a result holds them: those that were given or have defaults."""
+        return self.model_dump(mode="json", exclude_none=True)
+
     def run(
         self,
         progress: Progress | None = None,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import signal
 import threading
 import time
@@ -136,9 +137,9 @@ def drive(
         spec.stepping,
     )
     recording = _begin(spec, assembly, state, experiment, out, resume, overwrite)
-    if recording.complete:
-        return recording.result()
     try:
+        if recording.complete:
+            return recording.result()
         tell(0.0, "getting ready" if _compiled() else "compiling the kernels, this once (about a minute)")
         _warm_up(motion)
         if recording.checkpoint is not None:
@@ -157,6 +158,8 @@ def drive(
         raise TorsadeError(
             f"{str(error).rstrip('.')} (the frames until then are in {str(recording.part)!r})"
         ) from None
+    finally:
+        recording.close()
 
 
 def _begin(
@@ -171,7 +174,7 @@ def _begin(
     """A recording for all that this protocol measures."""
     attrs = {
         "protocol": spec.protocol,
-        "spec": spec.model_dump_json(exclude_none=True),
+        "spec": json.dumps(spec.stored()),
         "knot": spec.shape_name,
         "radius": spec.h,
         "start": hashlib.sha256(state.x.tobytes()).hexdigest(),
