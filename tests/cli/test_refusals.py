@@ -57,6 +57,10 @@ BEND = ("run", "prison-escape")
         ),
         ((*BEND, "--knot", "reef", "--out", "reef"), "give a name that ends in .zarr"),
         ((*BEND, "--knot", "reef", "--out", "no/such/reef.zarr"), "there is no folder"),
+        ((*BEND, "--knot", "reef", "--out", ""), "the output is called ''"),
+        ((*BEND, "--knot", "reef", "--out", "."), "give a name that ends in .zarr"),
+        ((*BEND, "--knot", "reef", "--out", "/", "--resume"), "give a name that ends in .zarr"),
+        (("demo", "--out", ""), "--out is empty"),
         ((*BEND, "--knot", "reef", "--resume"), "(--out NAME.zarr)"),
         ((*BEND, "--centerline", "none.csv"), "there is no file 'none.csv'"),
         ((*BEND, "--spec", "none.toml"), "there is no file 'none.toml'"),
@@ -88,6 +92,21 @@ def test_pictures_are_refused_before_the_run(tmp_path: Path, option: str, file: 
     pytest.importorskip("pyvista" if option == "--picture" else "matplotlib")
     assert says in refusal(*BEND, "--knot", "reef", option, file, cwd=tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_picture_and_a_plot_need_two_files(tmp_path: Path) -> None:
+    pytest.importorskip("pyvista")
+    same = ("--picture", "reef.png", "--plot", "./reef.png")
+    assert "give each a file of its own" in refusal(*BEND, "--knot", "reef", *same, cwd=tmp_path)
+
+
+def test_the_demo_replaces_nothing_of_others(tmp_path: Path) -> None:
+    (tmp_path / "reef.png").write_text("mine")
+    assert "'reef.png' exists and may not be the demo's" in refusal("demo", "--out", ".", cwd=tmp_path)
+    done = shell(*BEND, "--knot", "reef", "--duration", "1 ms", "--out", "reef.zarr", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "'reef.zarr' is the result of another run" in refusal("demo", "--out", ".", cwd=tmp_path)
+    assert (tmp_path / "reef.png").read_text() == "mine"
 
 
 def hooked() -> list[np.ndarray]:

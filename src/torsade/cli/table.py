@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -12,20 +12,29 @@ from rich.text import Text
 if TYPE_CHECKING:
     from torsade.results import Result
 
-__all__ = ["print_table"]
+__all__ = ["print_file", "print_table"]
+
+WIDTH = 24
+"""Of the first column: the longest name in it."""
 
 
-def print_table(result: Result, report: dict[str, Any], files: list[str]) -> None:
-    """Print what was done, what came of it, and the files that hold it."""
-    console = Console(highlight=False)
+def print_table(result: Result, report: dict[str, Any]) -> None:
+    """Print what was done and what came of it."""
+    _print((*_asked(result), *_found(report, result.last_held), *_spent(report)))
+
+
+def print_file(what: str, path: str) -> None:
+    """Print where a file of the result is, as a further row of the table."""
+    _print([(what, path)])
+
+
+def _print(rows: Iterable[tuple[str, str]]) -> None:
     table = Table(show_header=False, box=None, pad_edge=False)
-    table.add_column(style="bold", no_wrap=True)
+    table.add_column(style="bold", no_wrap=True, min_width=WIDTH)
     table.add_column(overflow="fold")
-    for name, value in (*_asked(result), *_found(report, result.last_held), *_spent(report)):
+    for name, value in rows:
         table.add_row(name, Text(value))
-    for k, file in enumerate(files):
-        table.add_row("" if k else "files", Text(file))
-    console.print(table)
+    Console(highlight=False).print(table)
 
 
 def _asked(result: Result) -> Iterator[tuple[str, str]]:
