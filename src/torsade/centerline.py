@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade import curve
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted, reason_of
 
 __all__ = ["Centerline", "check", "read_csv", "write_csv"]
 
@@ -86,7 +86,7 @@ def write_csv(centerline: Centerline, path: str | Path) -> None:
     try:
         Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
     except OSError as error:
-        raise TorsadeError(f"cannot write {str(path)!r} ({_reason(error)}); choose another place") from None
+        raise TorsadeError(f"cannot write {str(path)!r} ({reason_of(error)}); choose another place") from None
 
 
 def read_csv(path: str | Path) -> Centerline:
@@ -146,7 +146,7 @@ def _read_text(path: Path) -> str:
     except (OSError, ValueError) as error:
         if isinstance(error, TorsadeError):
             raise
-        raise TorsadeError(f"cannot read {name} ({_reason(error)}); give a readable CSV file") from None
+        raise TorsadeError(f"cannot read {name} ({reason_of(error)}); give a readable CSV file") from None
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -165,7 +165,8 @@ def _cells(line: str, where: str) -> list[str]:
 
 def _check_header(line: str, where: str) -> None:
     if ",".join(_cells(line, where)).lower() != HEADER:
-        raise TorsadeError(f"{where} is {_quote(line)}, not the header; begin with the line {HEADER!r}")
+        given = quoted(line.strip(), 40)
+        raise TorsadeError(f"{where} is {given}, not the header; begin with the line {HEADER!r}")
 
 
 def _read_row(line: str, where: str) -> tuple[int, list[float]]:
@@ -173,15 +174,15 @@ def _read_row(line: str, where: str) -> tuple[int, list[float]]:
     if len(cells) != 4:
         raise TorsadeError(f"{where} has {len(cells)} columns; give the four of {HEADER!r}")
     if not (cells[0].isascii() and cells[0].isdigit() and len(cells[0]) <= 9):
-        raise TorsadeError(f"{where} has strand {_quote(cells[0])}; give an integer of at least 0")
+        raise TorsadeError(f"{where} has strand {quoted(cells[0], 40)}; give an integer of at least 0")
     node = []
     for axis, cell in zip("xyz", cells[1:], strict=True):
         try:
             value = math.nan if "_" in cell else float(cell)
         except ValueError:
-            raise TorsadeError(f"{where} has {axis} = {_quote(cell)}; give a number, in metres") from None
+            raise TorsadeError(f"{where} has {axis} = {quoted(cell, 40)}; give a number, in metres") from None
         if not math.isfinite(value):
-            raise TorsadeError(f"{where} has {axis} = {_quote(cell)}; give a finite number, in metres")
+            raise TorsadeError(f"{where} has {axis} = {quoted(cell, 40)}; give a finite number, in metres")
         node.append(value)
     return int(cells[0]), node
 
@@ -274,13 +275,3 @@ def _position(x: FloatArray) -> str:
 
 def _mm(l: float) -> str:
     return f"{1e3 * l:.4g} mm"
-
-
-def _quote(text: str) -> str:
-    text = text.strip()
-    return repr(text if len(text) <= 40 else text[:37] + "...")
-
-
-def _reason(error: Exception) -> str:
-    reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-    return reason.lower()

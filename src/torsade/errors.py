@@ -13,6 +13,10 @@ class TorsadeError(ValueError):
     """
 
 
+class QuantityError(TorsadeError):
+    """A number that cannot be one; the sentence begins with what was given, and needs a name before it."""
+
+
 def quoted(value: object, longest: int = 60) -> str:
     """What was given, as it is shown in a sentence: never long, numbers as people write them."""
     if isinstance(value, float) and math.isfinite(value):

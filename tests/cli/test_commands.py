@@ -82,7 +82,7 @@ def test_a_specification_file_with_and_without_its_protocol(tmp_path: Path) -> N
     text = 'protocol = "prison-escape"\nknot = "reef"\nduration = "5 ms"\nframes = 4\nforce = "12 N"\n'
     (tmp_path / "reef.toml").write_text(text)
     one = shell("run", "prison-escape", "--spec", "reef.toml", "--frames", "2", "--json", cwd=tmp_path)
-    two = shell("run", "--spec", "reef.toml", "--frames", "2", "--json", cwd=tmp_path)
+    two = shell("run", "--frames", "2", "--spec", "reef.toml", "--json", cwd=tmp_path)
     assert one.returncode == two.returncode == 0, one.stderr + two.stderr
     first, second = json.loads(one.stdout), json.loads(two.stdout)
     assert len(first["times_s"]) == 3
@@ -131,3 +131,61 @@ def test_the_demo(tmp_path: Path) -> None:
         "reef.zarr",
     ]
     assert ts.open(tmp_path / "demo" / "reef.zarr").slipped_at is None
+
+
+DRAWING = """
+import sys
+from torsade.view import plots, scene
+def stop(*arguments, **options):
+    raise KeyboardInterrupt
+{where} = stop
+from torsade.cli import main
+main(sys.argv[1:])
+"""
+
+
+def test_ctrl_c_while_drawing_says_that_the_result_is_complete(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    script = DRAWING.format(where="plots.plot_separation")
+    done = subprocess.run(
+        [sys.executable, "-c", script, *SHORT, "--out", "reef.zarr", "--plot", "reef.png"],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+    )
+    assert done.returncode == 130
+    assert done.stderr == (
+        "torsade: interrupted while drawing 'reef.png'; the result is complete in 'reef.zarr'.\n"
+    )
+    assert "topological friction" in done.stdout
+    assert ts.open(tmp_path / "reef.zarr").complete
+
+
+def test_a_picture_that_fails_keeps_neither_numbers_nor_plot_away(tmp_path: Path) -> None:
+    pytest.importorskip("pyvista")
+    failing = (
+        "from torsade.errors import TorsadeError\ndef stop(*_, **__):\n    raise TorsadeError('no lamp')\n"
+    )
+    script = failing + DRAWING.replace("def stop", "def unused").format(where="scene.render_result")
+    done = subprocess.run(
+        [sys.executable, "-c", script, *SHORT, "--json", "--picture", "reef.png", "--plot", "reef.svg"],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (2, "torsade: no lamp.\n")
+    assert json.loads(done.stdout)["steps"] > 0
+    assert (tmp_path / "reef.svg").exists()
+
+
+def test_a_very_early_ctrl_c_is_clean(tmp_path: Path) -> None:
+    script = (
+        "import sys\nclass Stop:\n    def find_spec(self, name, *_):\n        if name == 'cyclopts':\n"
+        "            raise KeyboardInterrupt\nsys.meta_path.insert(0, Stop())\n"
+        "from torsade.cli import main\nmain(['run'])"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (130, 1)
+    assert done.stderr.startswith("torsade: interrupted before the first frame")

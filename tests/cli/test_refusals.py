@@ -48,7 +48,15 @@ BEND = ("run", "prison-escape")
         ((*BEND, "--knot", "reef", "--preset", "publishd"), "did you mean 'published'?"),
         ((*BEND, "reef"), "did you mean --knot reef?"),
         ((*BEND, "--knot", "reef", "--rho", "1"), "has no inertia"),
-        ((*BEND, "--knot", "reff"), "the nearest name is 'reef'"),
+        ((*BEND, "--knot", "reff"), "did you mean 'reef'?"),
+        (
+            ("run", "--knot", "reef"),
+            "--knot comes without a protocol; begin with torsade run",
+        ),
+        (("run", "--json", "--spec", "none.toml"), "there is no file 'none.toml'"),
+        ((*BEND, "--knot", "reef", "--diameter", "1 mm"), "give --radius, half of it"),
+        ((*BEND, "--knot", "reef", "--length", "1 m"), "a built-in knot takes --lead"),
+        ((*BEND, "--knot", "reef", "--frames", "9" * 5000), "more digits"),
         ((*BEND, "--knot", "reef", "--materail", "nylon"), "did you mean --material?"),
         ((*BEND, "--knot", "reef", "--force"), "--force has no value"),
         (

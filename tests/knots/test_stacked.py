@@ -263,8 +263,8 @@ def test_names() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"name": "reff"}, "'reff'; the nearest name is 'reef', choose one of reef, thief, granny, grief"),
-        ({"name": "grannie"}, "the nearest name is 'granny'"),
+        ({"name": "reff"}, "'reff'; did you mean 'reef'. choose one of reef, thief, granny, grief"),
+        ({"name": "grannie"}, "did you mean 'granny'"),
         ({"name": ""}, "no bend is called ''"),
         ({"name": "reef", "pulled": "A0A1"}, "'A0A1' are unknown; choose one of A1B1, A1B0, A0B1, A0B0"),
         ({"name": "reef", "radius": 0.0}, "radius is 0 m; give a positive length"),

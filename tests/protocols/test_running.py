@@ -159,6 +159,35 @@ def test_a_one_strand_knot(bends: Path) -> None:
     np.testing.assert_allclose(report["max_log_strain"], strain, rtol=1e-6)
 
 
+@pytest.mark.parametrize("seed", range(5))
+def test_slack_agrees_with_all_pairs(seed: int) -> None:
+    """The distance of the first of all pairs to touch, by brute force."""
+    rng = np.random.default_rng(seed)
+    strands = [1e-4 * np.cumsum(rng.normal(size=(60, 3)), axis=0) for _ in range(2)]
+    strands[1] -= np.array([rng.uniform(2e-3, 2e-2), 0.0, 0.0])
+    assembly = assemble(strands)
+    x = np.concatenate(strands)
+    a, b = (0.5 * (s[1:] + s[:-1]) for s in strands)
+    between = a[:, None] - b[None]
+    touch, along = 4e-4 * (1 - 1e-3), between[..., 0]
+    across = np.sum(between**2, axis=2) - along**2
+    meets = (across < touch**2) & (along > 0)
+    gap = (along[meets] - np.sqrt(touch**2 - across[meets])).min() if meets.any() else None
+    assert take_up_slack(assembly, x, 1, np.array([1.0, 0, 0]), 4e-4) == (gap is not None)
+    moved = x[60:, 0] - strands[1][:, 0]
+    np.testing.assert_allclose(moved, 0.0 if gap is None else gap, rtol=1e-12)
+
+
+def test_slack_of_long_strands_takes_little_memory() -> None:
+    """All pairs of these midpoints would take 20 GB."""
+    x = np.outer(np.arange(30_000) * 1e-4, [1.0, 0.0, 0.0])
+    strands = [x, x - [3.2, 0.0, 0.0]]
+    assembly = assemble(strands)
+    now = np.concatenate(strands)
+    assert take_up_slack(assembly, now, 1, np.array([1.0, 0, 0]), 4e-4)
+    assert now[-1, 0] == pytest.approx(-3.5e-4, abs=1e-4)
+
+
 def test_slack_is_taken_up_to_the_first_touch() -> None:
     a = np.outer(np.arange(-3, 4) * 1e-4, [0.0, 1.0, 0.0])
     b = np.outer(np.arange(-3, 4) * 1e-4, [0.0, 0.0, 1.0]) + np.array([-2e-3, 0.0, 0.0])

@@ -62,6 +62,25 @@ def test_a_specification_is_frozen_and_survives_json() -> None:
             "did you mean 'published'? choose one of standard, published",
         ),
         ({"knot": "reef", "frames": 0}, "frames is 0; give a number of at least 1"),
+        ({"knot": "reef", "frames": True}, "frames is True; give a whole number"),
+        (
+            {"knot": "reef", "frames": 10**400},
+            "frames is a whole number of 401 digits; give a number of at",
+        ),
+        (
+            {"knot": "reef", "frames": 10**5000},
+            "frames is a whole number of 5001 digits; give a number",
+        ),
+        ({"knot": "reef", "exclusion_edges": 10**9}, "give a number of at most 1e+06"),
+        ({"knot": "reef", "force": True}, "force True is not a number"),
+        ({"knot": "reef", "force": 10**400}, "force a whole number of 401 digits is not a finite number"),
+        (
+            {"knot": "square knot"},
+            "no bend is called 'square knot'; did you mean 'reef'? choose",
+        ),
+        ({"knot": "bowline"}, "'bowline'; choose one of reef, thief, granny, grief, or pull a centerline of"),
+        ({"knot": "reef", "diameter": "1 mm"}, "give 'radius', half of it"),
+        ({"knot": "reef", "length": "1 m"}, "a built-in knot takes 'lead'"),
         ({"knot": "reef", "frames": 1.5}, "frames is 1.5; give a whole number"),
         ({"knot": "reef", "material": "nilon"}, "did you mean 'nylon'?"),
         ({"knot": "reef", "nu": 0.5}, "nu is 0.5; give a number below 0.5"),
@@ -110,6 +129,24 @@ def test_strands_are_resampled_unless_published(bends: Path) -> None:
 def test_the_wrong_number_of_strands(bends: Path, protocol: type[Any], file: str, says: str) -> None:
     with pytest.raises(ts.TorsadeError, match=says):
         protocol(centerline=str(bends / file)).run()
+
+
+@pytest.mark.parametrize(
+    ("fields", "says"),
+    [
+        ({"lead": "2 m", "spacing": "0.02 mm"}, "more than the 100000 that a run can move"),
+        ({"frames": 1_000_000}, "1000001 frames of 314 nodes take 5.0 GB; give at most 796177 frames"),
+    ],
+)
+def test_runs_that_memory_cannot_hold(fields: dict[str, Any], says: str) -> None:
+    with pytest.raises(ts.TorsadeError, match=says):
+        PrisonEscape(knot="reef", **fields).run()
+
+
+def test_a_spacing_far_below_the_radius_is_refused_before_memory_is_taken(tmp_path: Path) -> None:
+    ts.write_csv(PrisonEscape(knot="reef").configuration(), tmp_path / "reef.csv")
+    with pytest.raises(ts.TorsadeError, match="more than the 100000"):
+        PrisonEscape(centerline=str(tmp_path / "reef.csv"), spacing="1 nm").run()
 
 
 def test_strands_that_never_meet_are_refused(tmp_path: Path) -> None:
@@ -173,7 +210,7 @@ def test_a_missing_file_is_named() -> None:
 
 
 def test_what_is_given_replaces_what_it_excludes() -> None:
-    fields = {"knot": "reef", "fixed_step": 1e-4, "force": 3}
+    fields = {"knot": "reef", "lead": "5 mm", "fixed_step": 1e-4, "force": 3}
     assert merged(fields, {"centerline": "a.csv", "tolerance": "1e-3"}) == {
         "force": 3,
         "centerline": "a.csv",

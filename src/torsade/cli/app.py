@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, Group, Parameter
 
 from torsade import __version__
+from torsade.errors import TorsadeError
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
@@ -79,9 +80,21 @@ def _about(spec: type[Spec]) -> str:
 
 def with_protocol(arguments: list[str]) -> list[str]:
     """`run --spec FILE` names its protocol in the file: put it where a protocol is expected."""
-    if arguments[:1] != ["run"] or len(arguments) < 2 or not arguments[1].startswith("--spec"):
+    if arguments[:1] != ["run"] or len(arguments) < 2 or not arguments[1].startswith("--"):
         return arguments
-    path = arguments[1].removeprefix("--spec").removeprefix("=") or "".join(arguments[2:3])
+    if arguments[1] == "--help":
+        return arguments
+    path = None
+    for k, word in enumerate(arguments):
+        if word == "--spec":
+            path = "".join(arguments[k + 1 : k + 2])
+        elif word.startswith("--spec="):
+            path = word.removeprefix("--spec=")
+    if path is None:
+        from torsade.protocols.files import PROTOCOLS
+
+        known = " or ".join(f"torsade run {name}" for name in PROTOCOLS)
+        raise TorsadeError(f"{arguments[1]} comes without a protocol; begin with {known}")
     if not path:
         return arguments
     from torsade.protocols.files import read_fields

@@ -22,6 +22,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -29,9 +30,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade.curve import resample
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted
 
-__all__ = ["BENDS", "PULLS", "BuiltBend", "bend"]
+__all__ = ["BENDS", "PULLS", "BuiltBend", "bend", "known_name"]
 
 FloatArray = NDArray[np.float64]
 
@@ -49,6 +50,8 @@ _NAMES = MappingProxyType(
 
 BENDS = tuple(_NAMES)
 """Names that `bend` knows."""
+
+_OTHER_NAMES = MappingProxyType({"square": "reef", "hercules": "reef", "bread bag": "thief", "what": "grief"})
 
 # Control points [radii] from the apex of the bight of A to its leg, chosen to use the least fiber, to the
 # digit given, with strands 2.1 radii apart and radius * kappa below 0.47.
@@ -119,7 +122,7 @@ def bend(
     Raises:
         TorsadeError: a name or a pull that is not in the list, or a length out of range.
     """
-    name = _known_name(name)
+    name = known_name(name)
     tangle, usual = _NAMES[name]
     pulled = usual if pulled is None else pulled.strip().upper()
     if pulled not in PULLS:
@@ -181,14 +184,16 @@ def _lengthened(x: FloatArray, out: FloatArray, reach: float) -> FloatArray:
     return np.concatenate([x, x[-1:] + (reach - so_far) * ahead])
 
 
-def _known_name(name: str) -> str:
-    """The name as `BENDS` has it, or an error that says which one is nearest."""
-    known = name.strip().lower()
-    if known in _NAMES:
-        return known
-    near = difflib.get_close_matches(known, BENDS, n=1, cutoff=0.0)
+def known_name(name: str) -> str:
+    """The name as `BENDS` has it, or an error that says which one is meant or what there is."""
+    plain = re.sub(r"[\s_-]+(knot|bend)$", "", name.strip().lower())
+    if plain in _NAMES:
+        return plain
+    near = [_OTHER_NAMES[plain]] if plain in _OTHER_NAMES else difflib.get_close_matches(plain, BENDS, n=1)
+    hint = f"did you mean {near[0]!r}? " if near else ""
     raise TorsadeError(
-        f"no bend is called {name!r}; the nearest name is {near[0]!r}, choose one of {', '.join(BENDS)}"
+        f"no bend is called {quoted(name)}; {hint}choose one of {', '.join(BENDS)}, or pull a centerline of "
+        "your own (--centerline FILE.csv)"
     )
 
 

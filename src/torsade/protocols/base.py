@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -17,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple,
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 from pydantic.fields import FieldInfo
 
-from torsade.errors import TorsadeError
+from torsade.errors import QuantityError, TorsadeError, quoted
 from torsade.material import Material, Section
 from torsade.material import preset as material_preset
 from torsade.units import Dimension, Length, Number, Pressure, Time, Viscosity
@@ -79,6 +78,8 @@ class Spec(BaseModel, ABC):
         "time": "there is no field 'time'; did you mean 'duration'?",
         "file": "there is no field 'file'; did you mean 'centerline'?",
         "dt": "there is no field 'dt'; did you mean 'fixed_step'?",
+        "diameter": "there is no field 'diameter'; give 'radius', half of it",
+        "thickness": "there is no field 'thickness'; give 'radius', half of it",
     }
     """What to say to those who give a field that this protocol does not have."""
 
@@ -141,7 +142,7 @@ class Spec(BaseModel, ABC):
     drag: Literal["continuum", "node-pair"] | None = Field(
         None, description="Collision drag law, continuum or node-pair; by default the preset's."
     )
-    exclusion_edges: Annotated[int, Field(ge=1)] | None = Field(
+    exclusion_edges: Annotated[int, Field(ge=1, le=1_000_000)] | None = Field(
         None,
         description="No contact between edges at most so many apart along a fiber; by default the preset's.",
     )
@@ -160,6 +161,13 @@ class Spec(BaseModel, ABC):
                 super().__init__(**fields)
             except ValidationError as error:
                 raise TorsadeError(_sentence(type(self), error)) from None
+
+    @field_validator("frames", "exclusion_edges", mode="before")
+    @classmethod
+    def _no_truth_value(cls, value: object) -> object:
+        if isinstance(value, bool):
+            raise QuantityError(f"is {value}; give a whole number")
+        return value
 
     @field_validator("material")
     @classmethod
@@ -290,11 +298,12 @@ def _sentence(spec: type[Spec], error: ValidationError) -> str:
     # A misspelt field explains the one that is missing.
     first = next((c for c in complaints if c["type"] == "extra_forbidden"), complaints[0])
     name = str(first["loc"][0]) if first["loc"] else ""
-    kind, given, context = first["type"], _quote(first["input"]), first.get("ctx", {})
+    if first["type"] == "int_parsing_size":
+        return f"{name} has more digits than a number of its kind can have; give a smaller one"
+    kind, given, context = first["type"], quoted(first["input"]), first.get("ctx", {})
     reason = context.get("error")
     if isinstance(reason, TorsadeError):
-        # Messages about quantities begin with what was given; the others name their subject.
-        return f"{name} {reason}" if name and str(reason)[0] in "'\"-0123456789ni[{" else str(reason)
+        return f"{name} {reason}" if name and isinstance(reason, QuantityError) else str(reason)
     if kind == "extra_forbidden":
         return _unknown_field(spec, name)
     if kind == "missing":
@@ -335,12 +344,4 @@ def _expected(spec: type[Spec], name: str) -> str:
     dimension = dimension_of(field)
     if dimension:
         return f'give a {dimension.name} such as "{dimension.example}"'
-    text = str(field.annotation)
-    return "give a whole number" if "int" in text else "give text"
-
-
-def _quote(value: object) -> str:
-    if isinstance(value, float) and math.isfinite(value):
-        return f"{value:g}"
-    text = repr(value)
-    return text if len(text) <= 60 else text[:56] + "..." + text[-1]
+    return "give a whole number" if "int" in str(field.annotation) else "give text"

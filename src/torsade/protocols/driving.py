@@ -17,7 +17,7 @@ from torsade import _compile, observables
 from torsade.arrays import Floats
 from torsade.assembly import Assembly, State, assemble, initial_state
 from torsade.centerline import Centerline, check, read_csv
-from torsade.curve import resample
+from torsade.curve import length, resample
 from torsade.errors import TorsadeError
 from torsade.motion.overdamped import Motion, Outcome, model
 from torsade.recording import Recording
@@ -26,12 +26,18 @@ from torsade.results import Result
 if TYPE_CHECKING:
     from torsade.protocols.base import Experiment, Progress, Spec
 
-__all__ = ["Interrupted", "drive", "read_centerline"]
+__all__ = ["Interrupted", "check_count", "drive", "read_centerline"]
 
 STEPS_AT_ONCE = 2000
 """Steps between looks at the clock of the screen and at Ctrl-C. Part of what makes runs repeat to the
 bit: the stepper makes a new neighbour list whenever it is called."""
 
+
+LARGEST_COUNT = 100_000
+"""Most nodes of a run: a step then takes about a second."""
+
+LARGEST_RESULT = 4_000_000_000
+"""Most that positions and strains of all frames may take in memory [bytes]."""
 
 SETTLING = 10
 """Fixed steps for which strands that just met are advanced in error-controlled steps instead.
@@ -109,15 +115,36 @@ def read_centerline(path: str, spec: Spec, strands: int, wanted: str) -> Centerl
         advice = f"; {other}" if other else ""
         has = "1 strand" if len(shape.strands) == 1 else f"{len(shape.strands)} strands"
         raise TorsadeError(f"{path!r} has {has}, and {wanted}{advice or f'; give {strands}'}")
+    check_count(sum(len(x) for x in shape.strands))
     check(shape, spec.h)
     for k, closed in enumerate(shape.closed):
         if closed:
             raise TorsadeError(f"strand {k} in {path!r} is closed and has no ends to pull; cut it open")
     if spec.node_spacing is None:
         return shape
+    check_count(sum(length(x) for x in shape.strands) / spec.node_spacing)
     resampled = Centerline(tuple(resample(x, spacing=spec.node_spacing) for x in shape.strands))
     check(resampled, spec.h)
     return resampled
+
+
+def check_count(nodes: float) -> None:
+    """Refuse more nodes than a run can move."""
+    if nodes > LARGEST_COUNT:
+        raise TorsadeError(
+            f"the fibers have {nodes:.0f} nodes, more than the {LARGEST_COUNT} that a run can move; give a "
+            "larger spacing, or shorter fibers"
+        )
+
+
+def _check_frames(frames: int, nodes: int) -> None:
+    """Refuse more frames than memory holds."""
+    size = 16 * nodes
+    if frames * size > LARGEST_RESULT:
+        raise TorsadeError(
+            f"{frames} frames of {nodes} nodes take {frames * size / 1e9:.1f} GB; give at most "
+            f"{LARGEST_RESULT // size - 1} frames, or a larger spacing"
+        )
 
 
 def drive(
@@ -126,6 +153,7 @@ def drive(
     """Run a specification; see `Spec.run`."""
     tell = progress or (lambda share, note: None)
     shape = spec.configuration()
+    _check_frames(spec.frames + 1, sum(len(x) for x in shape.strands))
     assembly = assemble(shape.strands, shape.closed)
     state = initial_state(assembly, shape.strands)
     experiment = spec.experiment(assembly, state)
@@ -140,7 +168,7 @@ def drive(
     try:
         if recording.complete:
             return recording.result()
-        tell(0.0, "getting ready" if _compiled() else "compiling the kernels, this once (about a minute)")
+        tell(0.0, _preparation())
         _warm_up(motion)
         if recording.checkpoint is not None:
             motion.restore(recording.checkpoint)
@@ -201,9 +229,12 @@ def _warm_up(motion: Motion) -> None:
     motion.restore(start)
 
 
-def _compiled() -> bool:
-    """Whether an earlier run has left compiled kernels."""
-    return _compile.CACHE is not None and any(_compile.CACHE.rglob("*.nbc"))
+def _preparation() -> str:
+    """What there is to do before the first step."""
+    if _compile.CACHE is None:
+        return "compiling the kernels (about a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
+    kept = any(_compile.CACHE.rglob("*.nbc"))
+    return "getting ready" if kept else "compiling the kernels, this once (about a minute)"
 
 
 def _record(

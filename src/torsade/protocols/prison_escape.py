@@ -38,6 +38,7 @@ class PrisonEscape(Spec):
         **Spec.hints,
         "bend": "there is no field 'bend'; did you mean 'knot'?",
         "name": "there is no field 'name'; did you mean 'knot'?",
+        "length": "there is no field 'length'; a built-in knot takes 'lead', a centerline has its own",
     }
 
     protocol: Literal["prison-escape"] = "prison-escape"
@@ -60,6 +61,15 @@ class PrisonEscape(Spec):
     direction: Direction = Field(
         "x", description="Direction of the pull: x, -x, y, -y, z, -z, or line (away from the clamped end)."
     )
+
+    @field_validator("knot")
+    @classmethod
+    def _known_knot(cls, name: str | None) -> str | None:
+        if name is None:
+            return None
+        from torsade.knots.stacked import known_name
+
+        return known_name(name)
 
     @field_validator("pulled")
     @classmethod
@@ -94,12 +104,12 @@ class PrisonEscape(Spec):
         """The knot, or the name of the centerline's file."""
         from pathlib import PurePath
 
-        return self.knot.strip().lower() if self.knot is not None else PurePath(str(self.centerline)).stem
+        return self.knot or PurePath(str(self.centerline)).stem
 
     def configuration(self) -> Centerline:
         """Two open strands, checked, at the resolution of the run."""
         from torsade.centerline import Centerline, check
-        from torsade.protocols.driving import read_centerline
+        from torsade.protocols.driving import check_count, read_centerline
 
         if self.knot is not None:
             from torsade.knots.stacked import bend
@@ -108,6 +118,7 @@ class PrisonEscape(Spec):
             pulled = None if self.pulled is None else "".join(sorted((self.pulled[:2], self.pulled[2:])))
             built = bend(self.knot, self.h, self.lead, self.node_spacing, pulled)
             shape = Centerline(built.strands)
+            check_count(sum(len(x) for x in shape.strands))
             check(shape, self.h)
             return shape
         return read_centerline(str(self.centerline), self, 2, "prison-escape pulls two strands")

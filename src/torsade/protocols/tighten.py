@@ -29,6 +29,7 @@ class Tighten(Spec):
         **Spec.hints,
         "knot": "tighten has no built-in knots yet; give a centerline, a CSV file of one strand",
         "bend": "tighten pulls a knot in one strand; give a centerline, or run prison-escape for a bend",
+        "length": "there is no field 'length'; a centerline has the length that it has",
         "pulled": "tighten pulls both ends, so there is no field 'pulled'; leave it out",
         "direction": "tighten pulls along -x and +x, so there is no field 'direction'; leave it out",
     }

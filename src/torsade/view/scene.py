@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, reason_of
 from torsade.view._extra import require
 from torsade.view.camera import (
     SAMPLE,
@@ -79,7 +79,7 @@ def render(
         require("matplotlib.image").imsave(path, pixels, dpi=300, format="png")
     except OSError as error:
         raise TorsadeError(
-            f"the picture cannot be written to {path} ({error.strerror or error}); give a path in a folder "
+            f"the picture cannot be written to {path} ({reason_of(error)}); give a path in a folder "
             "that exists and can be written."
         ) from error
     return path
