@@ -2,9 +2,13 @@
 
 A result is an `xarray.Dataset` in SI units. Histories have the dimension `time`; `twist` also `fiber`.
 Frames are `position (time, node, space)` [m] and `log_strain (time, node)`, stored in single precision;
-`node_start (fiber_bound)` says where each fiber begins, `closed (fiber)` which are closed. The
-attributes hold `protocol`, `spec` (JSON), `knot`, `radius` [m], `versions`, `created`, `status`, `done`
-(frames), `steps`, `wall_s`, and what the protocol concludes, such as `c_f`.
+Samples, `sample_time (sample)` [s] and `sample_separation (sample)` [m], are finer in time and do not
+depend on frames: what a run concludes comes from them. `node_start (fiber_bound)` says where each fiber
+begins, `closed (fiber)` which are closed.
+
+The attributes hold `protocol`, `spec` and `model` (JSON: what was asked, and the numbers that it meant),
+`knot`, `radius` [m], `versions`, `created`, `status`, `done` (frames), `sampled`, `steps`, `wall_s`, and
+what the protocol concludes, such as `c_f`.
 """
 
 from __future__ import annotations
@@ -58,7 +62,9 @@ class Result:
             what = "is not a result of torsade" if path.exists() else "does not exist"
             raise TorsadeError(f"{str(path)!r} {what}; give a folder NAME.zarr written by a run")
         stored = xarray.open_dataset(path, engine="zarr", chunks=None)
-        result = cls(stored.isel(time=slice(0, int(stored.attrs["done"]))))
+        ends = {"time": "done", "sample": "sampled"}
+        recorded = {d: slice(0, int(stored.attrs[name])) for d, name in ends.items() if d in stored.dims}
+        result = cls(stored.isel(recorded))
         for variable in result._dataset.variables.values():
             if variable.nbytes <= READ_AT_ONCE:
                 variable.load()

@@ -49,7 +49,7 @@ def create(dataset: xarray.Dataset, path: Path) -> None:
 
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in dataset.variables.items():
-        if variable.dims[:1] == ("time",):
+        if variable.dims[:1] in (("time",), ("sample",)):
             frame = max(1, variable.dtype.itemsize * int(np.prod(variable.shape[1:])))
             rows = max(1, min(variable.shape[0], -(-CHUNK_BYTES // frame)))
             encoding[str(name)] = {"chunks": (rows, *variable.shape[1:])}
@@ -117,8 +117,8 @@ def read_restart(part: Path, wanted: Iterable[str]) -> dict[str, NDArray[Any]]:
         ) from None
 
 
-def complete(part: Path, out: Path, frames: int, changed: Mapping[str, Any]) -> None:
-    """Cut a grown result to its frames, give it its last attributes and its name.
+def complete(part: Path, out: Path, sizes: Mapping[str, int], changed: Mapping[str, Any]) -> None:
+    """Cut a grown result to the sizes of its dimensions, give it its last attributes and its name.
 
     What is needed to go on goes last: whatever stops this, it can be done once more.
     """
@@ -128,8 +128,9 @@ def complete(part: Path, out: Path, frames: int, changed: Mapping[str, Any]) -> 
         group = zarr.open_group(part, mode="r+")
         for _, array in group.arrays():
             names = array.metadata.dimension_names  # type: ignore[union-attr]
-            if names and names[0] == "time" and array.shape[0] != frames:
-                array.resize((frames, *array.shape[1:]))
+            size = sizes.get(str(names[0])) if names else None
+            if size not in (None, array.shape[0]):
+                array.resize((size, *array.shape[1:]))
         group.attrs.update(dict(changed))
         zarr.consolidate_metadata(str(part))
         replace(part, out)

@@ -70,6 +70,11 @@ def test_a_table_names_the_files(tmp_path: Path) -> None:
     done = shell(*SHORT, "--out", "reef.zarr", "--plot", "reef.svg", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "topological friction c_f" in done.stdout
+    assert "no, not within 0.005 s" in done.stdout
+    assert "mm/s, from 0 s to 0.005 s" in done.stdout
+    assert "nylon, radius 0.2 mm" in done.stdout
+    assert "A1 clamped, B1 pulled" in done.stdout
+    assert "mm at 0.005 s" in done.stdout
     assert "reef.zarr" in done.stdout
     assert (tmp_path / "reef.svg").stat().st_size > 1000
     again = shell(*SHORT, "--out", "reef.zarr", cwd=tmp_path)
@@ -112,6 +117,7 @@ def test_ctrl_c_says_what_is_saved_and_how_to_go_on(tmp_path: Path) -> None:
     assert process.returncode == 130
     assert "frames are saved in 'reef.zarr.part'" in error
     assert "--resume" in error
+    assert "stopping ..." in error
     assert "Traceback" not in error
     stored = ts.open(part)
     assert stored.frames > 5

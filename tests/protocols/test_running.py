@@ -57,6 +57,30 @@ def test_the_report_has_the_promised_keys(short: ts.Result) -> None:
     assert report["pull_speed_m_per_s"] == pytest.approx(speed)
 
 
+def test_runs_shorter_than_settling_say_from_when_they_are_measured(short: ts.Result) -> None:
+    report = PrisonEscape.report(short)
+    assert report["c_f"] > 0
+    assert report["c_f_from_s"] == 0.0
+    assert report["pulled"] == "A1B1"
+
+
+@pytest.mark.slow
+def test_friction_and_slipping_do_not_depend_on_frames() -> None:
+    found = {n: PrisonEscape(knot="thief", frames=n).run() for n in (5, 100, 1000)}
+    for result in found.values():
+        assert result.c_f == pytest.approx(found[100].c_f, rel=0.005)
+        assert result.slipped_at == pytest.approx(found[100].slipped_at, abs=0.01)
+    assert found[5].c_f == found[100].c_f
+    assert found[100].dataset.attrs["c_f_from_s"] == 0.3
+
+
+def test_samples_are_even_whatever_the_frames(short: ts.Result) -> None:
+    np.testing.assert_allclose(short.dataset["sample_time"], np.linspace(0, 0.01, 101), rtol=1e-9)
+    both = np.isclose(short.dataset["sample_time"].values[:, None], short.dataset["time"].values)
+    i, k = np.nonzero(both)
+    np.testing.assert_array_equal(short.dataset["sample_separation"][i], short.dataset["separation"][k])
+
+
 def test_the_same_run_twice_is_the_same_to_the_bit(short: ts.Result) -> None:
     assert SHORT.run().dataset.equals(short.dataset)
 
@@ -68,7 +92,7 @@ def test_ctrl_c_keeps_the_frames_and_resuming_changes_no_bit(tmp_path: Path, sho
         if share > 0.4:
             raise KeyboardInterrupt
 
-    with pytest.raises(Interrupted, match=r"interrupted at t = 0.005 s; 4 frames are saved in"):
+    with pytest.raises(Interrupted, match=r"interrupted at t = 0.00375 s; 4 frames are saved in"):
         SHORT.run(stop, out)
     part = ts.open(tmp_path / "reef.zarr.part")
     assert part.frames == 4
@@ -110,7 +134,9 @@ def test_a_killed_run_can_be_read_and_resumed_to_the_bit(tmp_path: Path, short: 
     assert done.returncode == -signal.SIGKILL
     part = ts.open(tmp_path / "reef.zarr.part")
     assert part.frames == 5
-    assert part.dataset.equals(short.dataset.isel(time=slice(0, 5)))
+    samples = part.dataset.sizes["sample"]
+    assert 60 <= samples <= 62
+    assert part.dataset.equals(short.dataset.isel(time=slice(0, 5), sample=slice(0, samples)))
     plain = xarray.open_zarr(tmp_path / "reef.zarr.part", chunks=None)
     assert plain.attrs["done"] == 5
     np.testing.assert_array_equal(plain["separation"][:5], short.dataset["separation"][:5])

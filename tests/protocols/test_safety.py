@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -175,6 +176,54 @@ def test_a_moved_centerline_is_the_same_run(tmp_path: Path) -> None:
         PrisonEscape(centerline=str(tmp_path / "a.csv"), **fields).run(stopped(0.45), out)
     assert PrisonEscape(centerline=str(tmp_path / "b.csv"), **fields).run(out=out, resume=True).complete
     assert json.loads(ts.open(out).dataset.attrs["spec"])["frames"] == 8
+
+
+@pytest.mark.parametrize("name", ["torsade", "numba", "numpy"])
+def test_versions_are_not_mixed(part: Path, name: str) -> None:
+    versions = places.attributes(part)["versions"]  # type: ignore[index]
+    store.set_attributes(part, {"versions": versions | {name: "0.0.7"}})
+    with pytest.raises(
+        ts.TorsadeError, match=f"begun with {name} 0.0.7, and this is {name} {versions[name]}"
+    ):
+        SPEC.run(out=part.with_suffix(""), resume=True)
+
+
+def test_names_that_mean_something_else_now_are_not_mixed(part: Path) -> None:
+    model = json.loads(places.attributes(part)["model"])  # type: ignore[index]
+    assert model["material"]["E"] == 1e9
+    assert model["radius"] == SPEC.h
+    assert model["laws"]["eta_f_ratio"] == 3.3
+    assert model["stepping"]["tolerance"] == 1e-2
+    assert model["spacing"] == 0.5 * SPEC.h
+    model["material"]["E"] = 2e9
+    store.set_attributes(part, {"model": json.dumps(model)})
+    with pytest.raises(ts.TorsadeError, match=r"was begun when material meant .* and now it means"):
+        SPEC.run(out=part.with_suffix(""), resume=True)
+
+
+def test_the_time_of_a_looks_at_ctrl_c_is_short() -> None:
+    """A second Ctrl-C ends at once, the first is told of and obeyed between two steps."""
+    from torsade.protocols.patience import Patience
+
+    told = []
+    with Patience(lambda: told.append(1)) as patience:
+        patience.end()
+        signal.raise_signal(signal.SIGINT)
+        assert told == [1]
+        with pytest.raises(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGINT)
+        with pytest.raises(KeyboardInterrupt):
+            patience.end()
+
+
+def test_long_stretches_without_frames_look_at_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
+    from torsade.protocols import driving
+
+    seen = []
+    monkeypatch.setattr(driving, "NODE_STEPS_AT_ONCE", 314 * 2)
+    spec = PrisonEscape(knot="reef", duration="2 ms", frames=1, fixed_step="2 us")
+    spec.run(lambda share, note: seen.append(share))
+    assert len(seen) > 400  # ten steps between samples, in calls of two
 
 
 def test_another_run_than_the_complete_one_can_be_begun_anew(tmp_path: Path) -> None:

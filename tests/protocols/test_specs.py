@@ -37,7 +37,8 @@ def test_the_published_preset_and_what_overrides_it() -> None:
     spec = PrisonEscape(knot="reef", preset="published")
     assert spec.laws == PUBLISHED
     assert spec.stepping.fixed_step == 1e-4
-    assert spec.node_spacing is None
+    assert spec.node_spacing == pytest.approx(1.38e-4)
+    assert PrisonEscape(centerline="a.csv", preset="published").node_spacing is None
     spec = PrisonEscape(knot="reef", preset="published", drag="continuum", eta_f_ratio=3.3, tolerance=1e-4)
     assert (spec.laws.drag, spec.laws.eta_f_ratio, spec.laws.area) == ("continuum", 3.3, "projected")
     assert (spec.stepping.fixed_step, spec.stepping.tolerance) == (0.0, 1e-4)
@@ -91,6 +92,11 @@ def test_a_specification_is_frozen_and_survives_json() -> None:
         ({"knot": "reef", "centerline": "a.csv"}, "are both given; give one of them"),
         ({"knot": "reef", "tolerance": 1e-3, "fixed_step": 1e-4}, "are both given"),
         ({}, "nothing to pull is given"),
+        (
+            {"knot": "reef", "material": "silicone"},
+            "a force of 15 N would stretch this fiber by F/EA = 2.39, and the model holds for 0.5 at most; "
+            "give a force of at most 3.14 N, or another material, E or radius",
+        ),
     ],
 )
 def test_bad_fields_are_refused_in_one_sentence(fields: dict[str, Any], says: str) -> None:

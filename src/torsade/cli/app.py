@@ -20,7 +20,10 @@ __all__ = ["OPTIONS", "build", "flag", "with_protocol"]
 OPTIONS: dict[str, tuple[type, str]] = {
     "spec": (str, "TOML file with the fields above; options given here replace those in it."),
     "out": (str, "Write the result to this folder NAME.zarr while it runs."),
-    "picture": (str, "Draw the last frame, coloured by strain, to this PNG file."),
+    "picture": (
+        str,
+        "Draw the last frame, or the last frame before slipping, to this PNG file, coloured by strain.",
+    ),
     "plot": (str, "Plot the history to this file (.png, .pdf or .svg)."),
     "json": (bool, "Print the numbers as JSON, and nothing else, on the standard output."),
     "resume": (bool, "Go on with the --out of an interrupted run of the same specification."),

@@ -164,7 +164,7 @@ def _progress(quiet: bool) -> Iterator[Progress | None]:
 
 
 def _notice(share: float, note: str) -> None:
-    if note.startswith("compiling"):
+    if note.startswith(("compiling", "stopping")):
         say(note)
 
 

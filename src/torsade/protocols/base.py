@@ -11,6 +11,7 @@ import difflib
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
@@ -34,6 +35,13 @@ __all__ = ["STANDARD_SPACING", "Experiment", "Progress", "Spec", "dimension_of"]
 STANDARD_SPACING = 0.5  # radii
 """Greatest distance between nodes in the standard preset."""
 
+PUBLISHED_SPACING = 0.69  # radii
+"""The same for built-in knots in the published preset: the mean edge of the published reef, thief, granny
+and grief."""
+
+LARGEST_STRAIN = 0.5
+"""Strain F/EA beyond which neither linear elasticity nor a rest length means anything."""
+
 PUBLISHED_STEP = 1e-4
 """Fixed time step of the published preset [s]."""
 
@@ -51,10 +59,12 @@ class Experiment(NamedTuple):
     boundary : ends and loads
     measure : state → scalars of one frame, besides those that every protocol records
     derive : recorded histories (n_frames,) → further histories that follow from them
-    conclude : recorded histories, and the time [s] at which nothing resisted the load any more or None
-        → numbers that belong to the run as a whole
+    conclude : samples, and the time [s] at which nothing resisted the load any more or None → numbers that
+        belong to the run as a whole
     catch : called when nothing resists the load: move the state, in place, to where something does, and
         say whether there is such a place
+    sampled : measures that `conclude` needs, recorded at times that do not depend on the number of frames
+    about : attributes of the result, in words
     """
 
     boundary: Boundary
@@ -62,6 +72,8 @@ class Experiment(NamedTuple):
     derive: Callable[[Mapping[str, Floats]], dict[str, Floats]]
     conclude: Callable[[Mapping[str, Floats], float | None], dict[str, float]]
     catch: Callable[[State], bool] = lambda state: False
+    sampled: tuple[str, ...] = ()
+    about: Mapping[str, str] = MappingProxyType({})
 
 
 class Spec(BaseModel, ABC):
@@ -105,7 +117,7 @@ class Spec(BaseModel, ABC):
     preset: Literal["standard", "published"] = Field(
         "standard",
         description="Model: standard (converging laws, resampled nodes, error-controlled steps) or "
-        "published (the thesis's own program, on the nodes as given).",
+        "published (the thesis's own program, on the nodes as given or as far apart as those published).",
     )
     duration: Annotated[Time, Positive] = Field(1.0, description="How long to pull.")
     frames: int = Field(
@@ -113,8 +125,8 @@ class Spec(BaseModel, ABC):
     )
     spacing: Annotated[Length, Positive] | None = Field(
         None,
-        description="Greatest distance between nodes; by default half a radius, or the nodes as given when "
-        "published.",
+        description="Greatest distance between nodes; by default half a radius; when published, the nodes "
+        "as given, or 0.69 radii for a built-in knot.",
     )
     tolerance: Annotated[Number, Positive] | None = Field(
         None,
@@ -184,6 +196,16 @@ class Spec(BaseModel, ABC):
             )
         return self
 
+    def check_strain(self, force: float) -> None:
+        """Refuse a pull [N] under which the fiber is no longer elastic in any sense."""
+        EA = self.fiber_material.E * self.section.A
+        if force > LARGEST_STRAIN * EA:
+            raise TorsadeError(
+                f"a force of {force:.3g} N would stretch this fiber by F/EA = {force / EA:.3g}, and the "
+                f"model holds for {LARGEST_STRAIN:g} at most; give a force of at most "
+                f"{LARGEST_STRAIN * EA:.3g} N, or another material, E or radius"
+            )
+
     @property
     def h(self) -> float:
         """Radius of the fiber [m]."""
@@ -228,9 +250,11 @@ class Spec(BaseModel, ABC):
     @property
     def node_spacing(self) -> float | None:
         """Greatest distance between nodes [m]; None to keep the nodes as they are given."""
-        if self.spacing is None and self.preset == "published":
-            return None
-        return STANDARD_SPACING * self.h if self.spacing is None else self.spacing
+        if self.spacing is not None:
+            return self.spacing
+        if self.preset == "published":
+            return PUBLISHED_SPACING * self.h if self.built_in else None
+        return STANDARD_SPACING * self.h
 
     def stored(self) -> dict[str, Any]:
         """The fields as a result holds them: those that were given or have defaults."""
@@ -264,6 +288,11 @@ class Spec(BaseModel, ABC):
         from torsade.protocols.driving import drive
 
         return drive(self, progress, out, resume, overwrite)
+
+    @property
+    @abstractmethod
+    def built_in(self) -> bool:
+        """Whether the shape is one of the package's own."""
 
     @property
     @abstractmethod

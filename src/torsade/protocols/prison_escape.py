@@ -97,7 +97,13 @@ class PrisonEscape(Spec):
             )
         if self.knot is None and self.lead is not None:
             raise TorsadeError("a centerline has the leads that it has; leave lead out, or give a knot")
+        self.check_strain(self.force)
         return self
+
+    @property
+    def built_in(self) -> bool:
+        """Whether a knot is given."""
+        return self.knot is not None
 
     @property
     def shape_name(self) -> str:
@@ -109,7 +115,7 @@ class PrisonEscape(Spec):
     def configuration(self) -> Centerline:
         """Two open strands, checked, at the resolution of the run."""
         from torsade.centerline import Centerline, check
-        from torsade.protocols.driving import check_count, read_centerline
+        from torsade.protocols.shapes import check_count, read_centerline
 
         if self.knot is not None:
             from torsade.knots.stacked import bend
@@ -165,6 +171,7 @@ class PrisonEscape(Spec):
             )
             numbers = {
                 "c_f": found.c_f,
+                "c_f_from_s": found.start,
                 "pull_speed_m_per_s": found.speed,
                 "slipped_at_s": found.slipped_at,
             }
@@ -181,7 +188,8 @@ class PrisonEscape(Spec):
                 f"strand {'AB'[pulled[0]]} pulled along {self.direction} never meets strand "
                 f"{'AB'[clamped[0]]}; give two strands that are hooked, or other ends in pulled"
             )
-        return Experiment(boundary, measure, derive, conclude, catch)
+        about = {"pulled": "".join(f"{'AB'[s]}{e}" for s, e in (clamped, pulled))}
+        return Experiment(boundary, measure, derive, conclude, catch, ("separation",), about)
 
     def _axis(self, apart: Floats) -> Floats:
         """Unit vector of the pull, which must lead away from the clamped end, `apart` [m] before it."""
@@ -208,8 +216,10 @@ class PrisonEscape(Spec):
         return {
             "protocol": "prison-escape",
             "knot": attrs["knot"],
+            "pulled": attrs["pulled"],
             "preset": result.spec["preset"],
             "c_f": attrs.get("c_f"),
+            "c_f_from_s": attrs.get("c_f_from_s"),
             "pull_speed_m_per_s": attrs.get("pull_speed_m_per_s"),
             "slipped_at_s": attrs.get("slipped_at_s"),
             "times_s": data["time"].values.tolist(),

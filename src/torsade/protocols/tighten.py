@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import PurePath
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from torsade.protocols.base import Experiment, Positive, Spec
 from torsade.units import Force
@@ -43,6 +43,16 @@ class Tighten(Spec):
     )
     force: Annotated[Force, Positive] = Field(0.02, description="Force on each end.")
 
+    @model_validator(mode="after")
+    def _bearable(self) -> Tighten:
+        self.check_strain(self.force)
+        return self
+
+    @property
+    def built_in(self) -> bool:
+        """Never: there are no one-strand knots in the package yet."""
+        return False
+
     @property
     def shape_name(self) -> str:
         """The name of the centerline's file."""
@@ -50,7 +60,7 @@ class Tighten(Spec):
 
     def configuration(self) -> Centerline:
         """One open strand, checked, at the resolution of the run."""
-        from torsade.protocols.driving import read_centerline
+        from torsade.protocols.shapes import read_centerline
 
         return read_centerline(self.centerline, self, 1, "tighten pulls one strand by both its ends")
 
