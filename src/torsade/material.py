@@ -10,9 +10,10 @@ True
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
+from types import MappingProxyType, ModuleType
 
 from torsade.errors import TorsadeError
 
@@ -186,3 +187,13 @@ def preset(name: str) -> Preset:
 def material(name: str) -> Material:
     """Return the named material; see `preset`."""
     return preset(name).material
+
+
+class _Named(ModuleType):
+    """Lets `torsade.material("nylon")` be the function: the import system gives that name to this module."""
+
+    def __call__(self, name: str) -> Material:
+        return material(name)
+
+
+sys.modules[__name__].__class__ = _Named

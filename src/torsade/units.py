@@ -40,6 +40,7 @@ __all__ = [
     "Torque",
     "Velocity",
     "Viscosity",
+    "metres",
     "quantity",
 ]
 
@@ -170,6 +171,16 @@ def quantity(value: str | float, dimension: str) -> float:
     if not math.isfinite(result):
         raise QuantityError(f"{quoted(value)} is not a finite number; {_advice(wanted)}")
     return result
+
+
+def metres(name: str, value: float | str) -> float:
+    """A length [m] that may carry a unit; what is wrong with it is said with its name."""
+    if not isinstance(value, str):
+        return value
+    try:
+        return quantity(value, "length")
+    except QuantityError as error:
+        raise QuantityError(f"{name} {error}") from None
 
 
 def _to_float(number: Real | Fraction) -> float:

@@ -107,10 +107,14 @@ def test_bad_fields_are_refused_in_one_sentence(fields: dict[str, Any], says: st
 
 
 def test_tighten_says_what_it_does_not_have() -> None:
-    with pytest.raises(ts.TorsadeError, match="no built-in knots yet; give a centerline"):
-        Tighten(knot="trefoil")  # type: ignore[call-arg]
-    with pytest.raises(ts.TorsadeError, match="centerline is missing; give a CSV file"):
-        Tighten()  # type: ignore[call-arg]
+    with pytest.raises(ts.TorsadeError, match="is called 'trefoil'; did you mean 'overhand'"):
+        Tighten(knot="trefoil")
+    with pytest.raises(ts.TorsadeError, match='nothing to pull is given; give a knot, "overhand", or'):
+        Tighten()
+    with pytest.raises(ts.TorsadeError, match="length_unit 'mm' belongs to a centerline"):
+        Tighten(knot="overhand", length_unit="mm")
+    with pytest.raises(ts.TorsadeError, match="length_unit 'kg' is no unit of length"):
+        Tighten(centerline="a.csv", length_unit="kg")
 
 
 # --- what a specification makes

@@ -33,7 +33,7 @@ OPTIONS: dict[str, tuple[type, str]] = {
 
 EXAMPLES = {
     "prison-escape": '--knot reef --force "15 N" --out reef.zarr --picture reef.png',
-    "tighten": '--centerline trefoil.csv --force "20 mN" --out trefoil.zarr',
+    "tighten": '--knot overhand --force "20 mN" --out overhand.zarr --picture overhand.png',
 }
 
 _WHAT = Group("What to do", sort_key=1)
@@ -155,7 +155,7 @@ def _option(name: str, kind: type, text: str, group: Group) -> inspect.Parameter
 
 def _help(spec: type[Spec], name: str) -> str:
     """Description of a field, with an example of its unit and its default."""
-    from torsade.protocols.base import dimension_of
+    from torsade.protocols.sentences import dimension_of
 
     field = spec.model_fields[name]
     dimension = dimension_of(field)

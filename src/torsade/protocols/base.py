@@ -7,20 +7,19 @@ written into every result. Nothing heavy is imported until it runs, so that help
 from __future__ import annotations
 
 import dataclasses
-import difflib
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from pathlib import Path
+from pathlib import Path, PurePath
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, get_args
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
-from pydantic.fields import FieldInfo
 
 from torsade.errors import QuantityError, TorsadeError, quoted
 from torsade.material import Material, Section
 from torsade.material import preset as material_preset
-from torsade.units import Dimension, Length, Number, Pressure, Time, Viscosity
+from torsade.protocols.sentences import sentence
+from torsade.units import Length, Number, Pressure, Time, Viscosity, quantity
 
 if TYPE_CHECKING:
     from torsade.arrays import Floats
@@ -30,7 +29,7 @@ if TYPE_CHECKING:
     from torsade.motion.overdamped import Laws, Stepping
     from torsade.results import Result
 
-__all__ = ["STANDARD_SPACING", "Experiment", "Progress", "Spec", "dimension_of"]
+__all__ = ["STANDARD_SPACING", "Experiment", "Progress", "Spec"]
 
 STANDARD_SPACING = 0.5  # radii
 """Greatest distance between nodes in the standard preset."""
@@ -96,6 +95,11 @@ class Spec(BaseModel, ABC):
     """What to say to those who give a field that this protocol does not have."""
 
     protocol: str
+    knot: str | None
+    centerline: str | None
+    length_unit: str | None = Field(
+        None, description="Unit of x, y, z in the centerline's file, such as mm; by default m."
+    )
     material: str = Field(
         "nylon", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
     )
@@ -121,7 +125,10 @@ class Spec(BaseModel, ABC):
     )
     duration: Annotated[Time, Positive] = Field(1.0, description="How long to pull.")
     frames: int = Field(
-        100, ge=1, le=1_000_000, description="Evenly spaced frames to record after the one at t = 0."
+        100,
+        ge=1,
+        le=1_000_000,
+        description="Frames to record after the one at t = 0, evenly spaced: N of them end N intervals.",
     )
     spacing: Annotated[Length, Positive] | None = Field(
         None,
@@ -172,7 +179,7 @@ class Spec(BaseModel, ABC):
             try:
                 super().__init__(**fields)
             except ValidationError as error:
-                raise TorsadeError(_sentence(type(self), error)) from None
+                raise TorsadeError(sentence(type(self), error)) from None
 
     @field_validator("frames", "exclusion_edges", mode="before")
     @classmethod
@@ -180,6 +187,18 @@ class Spec(BaseModel, ABC):
         if isinstance(value, bool):
             raise QuantityError(f"is {value}; give a whole number")
         return value
+
+    @field_validator("length_unit")
+    @classmethod
+    def _a_unit(cls, unit: str | None) -> str | None:
+        if unit is not None:
+            try:
+                quantity(f"1 {unit}", "length")
+            except QuantityError:
+                raise QuantityError(
+                    f"{quoted(unit)} is no unit of length; give m, mm, cm, um or in"
+                ) from None
+        return unit
 
     @field_validator("material")
     @classmethod
@@ -195,6 +214,19 @@ class Spec(BaseModel, ABC):
                 "fixed_step for steps of one length, or tolerance for error-controlled steps"
             )
         return self
+
+    def check_shape(self, advice: str) -> None:
+        """Refuse two shapes, or none, or a unit for none."""
+        if self.knot is not None and self.centerline is not None:
+            raise TorsadeError(
+                f"knot {self.knot!r} and centerline {self.centerline!r} are both given; give one of them"
+            )
+        if self.knot is None and self.centerline is None:
+            raise TorsadeError(f"nothing to pull is given; {advice}")
+        if self.knot is not None and self.length_unit is not None:
+            raise TorsadeError(
+                f"length_unit {self.length_unit!r} belongs to a centerline; leave it out, or give one"
+            )
 
     def check_strain(self, force: float) -> None:
         """Refuse a pull [N] under which the fiber is no longer elastic in any sense."""
@@ -253,7 +285,7 @@ class Spec(BaseModel, ABC):
         if self.spacing is not None:
             return self.spacing
         if self.preset == "published":
-            return PUBLISHED_SPACING * self.h if self.built_in else None
+            return PUBLISHED_SPACING * self.h if self.knot is not None else None
         return STANDARD_SPACING * self.h
 
     def stored(self) -> dict[str, Any]:
@@ -290,14 +322,9 @@ class Spec(BaseModel, ABC):
         return drive(self, progress, out, resume, overwrite)
 
     @property
-    @abstractmethod
-    def built_in(self) -> bool:
-        """Whether the shape is one of the package's own."""
-
-    @property
-    @abstractmethod
     def shape_name(self) -> str:
-        """Name of what is pulled, for tables and titles."""
+        """Name of what is pulled, for tables and titles: the knot's, or that of the centerline's file."""
+        return self.knot or PurePath(str(self.centerline)).stem
 
     @abstractmethod
     def configuration(self) -> Centerline:
@@ -311,66 +338,3 @@ class Spec(BaseModel, ABC):
     @abstractmethod
     def report(cls, result: Result) -> dict[str, Any]:
         """The numbers of a result under the keys of `--json`."""
-
-
-def dimension_of(field: FieldInfo) -> Dimension | None:
-    """What a field of a specification measures; None for names and counts."""
-    found = [m for m in field.metadata if isinstance(m, Dimension)]
-    for choice in get_args(field.annotation):
-        found += [m for m in getattr(choice, "__metadata__", ()) if isinstance(m, Dimension)]
-    return found[0] if found else None
-
-
-def _sentence(spec: type[Spec], error: ValidationError) -> str:
-    """The first of pydantic's complaints, as what was given, what was expected and what to do."""
-    complaints = error.errors()
-    # A misspelt field explains the one that is missing.
-    first = next((c for c in complaints if c["type"] == "extra_forbidden"), complaints[0])
-    name = str(first["loc"][0]) if first["loc"] else ""
-    if first["type"] == "int_parsing_size":
-        return f"{name} has more digits than a number of its kind can have; give a smaller one"
-    kind, given, context = first["type"], quoted(first["input"]), first.get("ctx", {})
-    reason = context.get("error")
-    if isinstance(reason, TorsadeError):
-        return f"{name} {reason}" if name and isinstance(reason, QuantityError) else str(reason)
-    if kind == "extra_forbidden":
-        return _unknown_field(spec, name)
-    if kind == "missing":
-        wanted = (spec.model_fields[name].description or "").rstrip(".")
-        return f"{name} is missing; give a {wanted}"
-    if kind == "literal_error":
-        choices = context["expected"].replace("'", "").replace(" or ", ", ").split(", ")
-        near = difflib.get_close_matches(str(first["input"]), choices, n=1)
-        hint = f"did you mean {near[0]!r}? " if near else ""
-        return f"{name} is {given}; {hint}choose one of {', '.join(choices)}"
-    bounds = {
-        "greater_than": ("above", "gt"),
-        "greater_than_equal": ("of at least", "ge"),
-        "less_than": ("below", "lt"),
-        "less_than_equal": ("of at most", "le"),
-    }
-    if kind in bounds:
-        word, key = bounds[kind]
-        field = spec.model_fields[name]
-        dimension = dimension_of(field)
-        what = f"a {dimension.name}" if dimension else "a number"
-        unit = f" {dimension.unit}" if dimension and dimension.unit else ""
-        return f"{name} is {given}; give {what} {word} {context[key]:g}{unit}"
-    return f"{name} is {given}; {_expected(spec, name)}"
-
-
-def _unknown_field(spec: type[Spec], name: str) -> str:
-    if name in spec.hints:
-        return spec.hints[name]
-    known = [k for k in spec.model_fields if k != "protocol"]
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    hint = f"did you mean {near[0]!r}?" if near else f"choose among {', '.join(known)}"
-    return f"{spec.model_fields['protocol'].default} has no field {name!r}; {hint}"
-
-
-def _expected(spec: type[Spec], name: str) -> str:
-    field = spec.model_fields[name]
-    dimension = dimension_of(field)
-    if dimension:
-        return f'give a {dimension.name} such as "{dimension.example}"'
-    return "give a whole number" if "int" in str(field.annotation) else "give text"

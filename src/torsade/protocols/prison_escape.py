@@ -44,7 +44,7 @@ class PrisonEscape(Spec):
     protocol: Literal["prison-escape"] = "prison-escape"
     knot: str | None = Field(None, description="Built-in bend: reef, thief, granny or grief.")
     centerline: str | None = Field(
-        None, description="CSV file of two strands, columns strand,x,y,z [m], in place of a knot."
+        None, description="CSV file of two strands, columns strand,x,y,z, in place of a knot."
     )
     pulled: str | None = Field(
         None,
@@ -67,8 +67,11 @@ class PrisonEscape(Spec):
     def _known_knot(cls, name: str | None) -> str | None:
         if name is None:
             return None
+        from torsade.knots.overhand import STRAND_KNOTS
         from torsade.knots.stacked import known_name
 
+        if name.strip().lower() in STRAND_KNOTS:
+            raise TorsadeError(f"{name!r} is a knot in one strand; give torsade run tighten --knot {name}")
         return known_name(name)
 
     @field_validator("pulled")
@@ -86,48 +89,23 @@ class PrisonEscape(Spec):
 
     @model_validator(mode="after")
     def _knot_or_centerline(self) -> PrisonEscape:
-        if self.knot is not None and self.centerline is not None:
-            raise TorsadeError(
-                f"knot {self.knot!r} and centerline {self.centerline!r} are both given; give one of them"
-            )
-        if self.knot is None and self.centerline is None:
-            raise TorsadeError(
-                'nothing to pull is given; give a knot such as "reef", or a centerline, a CSV file of two '
-                "strands"
-            )
+        self.check_shape('give a knot such as "reef", or a centerline, a CSV file of two strands')
         if self.knot is None and self.lead is not None:
             raise TorsadeError("a centerline has the leads that it has; leave lead out, or give a knot")
         self.check_strain(self.force)
         return self
 
-    @property
-    def built_in(self) -> bool:
-        """Whether a knot is given."""
-        return self.knot is not None
-
-    @property
-    def shape_name(self) -> str:
-        """The knot, or the name of the centerline's file."""
-        from pathlib import PurePath
-
-        return self.knot or PurePath(str(self.centerline)).stem
-
     def configuration(self) -> Centerline:
         """Two open strands, checked, at the resolution of the run."""
-        from torsade.centerline import Centerline, check
-        from torsade.protocols.shapes import check_count, read_centerline
+        from torsade.protocols.shapes import check_built, read_centerline
 
-        if self.knot is not None:
-            from torsade.knots.stacked import bend
+        if self.knot is None:
+            return read_centerline(str(self.centerline), self, 2, "prison-escape pulls two strands")
+        from torsade.knots.stacked import bend
 
-            # The bend does not care which of its two ends is the clamped one.
-            pulled = None if self.pulled is None else "".join(sorted((self.pulled[:2], self.pulled[2:])))
-            built = bend(self.knot, self.h, self.lead, self.node_spacing, pulled)
-            shape = Centerline(built.strands)
-            check_count(sum(len(x) for x in shape.strands))
-            check(shape, self.h)
-            return shape
-        return read_centerline(str(self.centerline), self, 2, "prison-escape pulls two strands")
+        # The bend does not care which of its two ends is the clamped one.
+        pulled = None if self.pulled is None else "".join(sorted((self.pulled[:2], self.pulled[2:])))
+        return check_built(bend(self.knot, self.h, self.lead, self.node_spacing, pulled), self.h)
 
     def grips(self) -> tuple[tuple[int, int], tuple[int, int]]:
         """(strand, end) of the clamped and of the pulled end."""

@@ -11,7 +11,7 @@ from torsade.errors import TorsadeError
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
 
-__all__ = ["check_count", "check_frames", "read_centerline"]
+__all__ = ["check_built", "check_count", "check_frames", "read_centerline"]
 
 LARGEST_COUNT = 100_000
 """Most nodes of a run: a step then takes about a second."""
@@ -22,7 +22,7 @@ LARGEST_RESULT = 4_000_000_000
 
 def read_centerline(path: str, spec: Spec, strands: int, wanted: str) -> Centerline:
     """Open strands from a CSV file, checked as given, then resampled as the specification wants."""
-    shape = read_csv(path)
+    shape = read_csv(path, spec.length_unit or "m")
     if len(shape.strands) != strands:
         other = {1: "tighten takes one", 2: "prison-escape takes two"}.get(len(shape.strands))
         advice = f"; {other}" if other else ""
@@ -48,6 +48,13 @@ def check_count(nodes: float) -> None:
             f"the fibers have {nodes:.0f} nodes, more than the {LARGEST_COUNT} that a run can move; give a "
             "larger spacing, or shorter fibers"
         )
+
+
+def check_built(shape: Centerline, radius: float) -> Centerline:
+    """A built-in knot, once it is certain that a fiber of this radius [m] can lie along it."""
+    check_count(sum(len(x) for x in shape.strands))
+    check(shape, radius)
+    return shape
 
 
 def check_frames(frames: int, nodes: int) -> None:
