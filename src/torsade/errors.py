@@ -27,6 +27,11 @@ def quoted(value: object, longest: int = 60) -> str:
     return text if len(text) <= longest else text[: longest - 4] + "..." + text[-1]
 
 
+def counted(number: int, what: str) -> str:
+    """A number of things: "1 frame", "4 frames"."""
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
+
+
 def reason_of(error: Exception) -> str:
     """What the system says about a file or folder."""
     return (getattr(error, "strerror", None) or str(error)).lower()

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from torsade import __version__, places, store
 from torsade.arrays import Floats
 from torsade.assembly import Assembly, State
-from torsade.errors import TorsadeError, quoted
+from torsade.errors import TorsadeError, counted, quoted
 from torsade.motion.overdamped import Checkpoint
 from torsade.results import Result
 
@@ -140,6 +140,7 @@ class Recording:
         recording._out = places.check_target(out, overwrite)
         recording._lock = places.Lock(recording._out)
         try:
+            places.check_target(out, overwrite)  # before the lock another run may have come to its end
             recording._start(places.part_of(recording._out), resume, overwrite)
         except BaseException:
             recording.close()
@@ -155,8 +156,8 @@ class Recording:
             return
         if done and not overwrite:
             raise TorsadeError(
-                f"{str(part)!r} holds {done} frames of an interrupted run; add --resume (resume=True) to go "
-                "on or --overwrite (overwrite=True) to begin anew"
+                f"{str(part)!r} holds {counted(done, 'frame')} of an interrupted run; add --resume "
+                "(resume=True) to go on or --overwrite (overwrite=True) to begin anew"
             )
         self.attrs["done"] = self.attrs["sampled"] = 0
         self.part = places.private(part, "new")
@@ -193,8 +194,8 @@ class Recording:
                 values[: self._count(name)] = before[name].values
         else:
             raise TorsadeError(
-                f"{str(part)!r} holds {found['done']} frames, but no state to go on from; open it for the "
-                "frames, or give --overwrite (overwrite=True) in place of resume to begin anew"
+                f"{str(part)!r} holds {counted(found['done'], 'frame')}, but no state to go on from; open it "
+                "for the frames, or give --overwrite (overwrite=True) in place of resume to begin anew"
             )
 
     def add(self, frame: Frame) -> None:
@@ -269,10 +270,11 @@ class Recording:
     def stop(self, status: str) -> None:
         """Save what there is of a run that did not come to its end, and why it did not."""
         self.attrs["status"] = status
-        if self.part is not None and self.done == 0:
-            shutil.rmtree(self.part, ignore_errors=True)
-            self.part = None
-        self.flush()
+        try:
+            if self.done:
+                self.flush()
+        finally:
+            self._discard()
 
     def finish(self, numbers: Mapping[str, float]) -> Result:
         """The result of a run that came to its end, with the numbers that belong to it as a whole."""
@@ -284,8 +286,15 @@ class Recording:
         self.complete = True
         return self.result()
 
+    def _discard(self) -> None:
+        """Remove a folder that never held a frame."""
+        if self.part is not None and self._out is not None and self.part != places.part_of(self._out):
+            shutil.rmtree(self.part, ignore_errors=True)
+            self.part = None
+
     def close(self) -> None:
         """Let other processes write to the same place."""
+        self._discard()
         if self._lock is not None:
             self._lock.release()
 

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from torsade import places, store
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, counted
 
 if TYPE_CHECKING:
     import xarray
@@ -136,7 +136,8 @@ class Result:
             done = (places.attributes(part) or {}).get("done", 0)
             if done:
                 raise TorsadeError(
-                    f"{str(part)!r} holds {done} frames of an interrupted run; finish it or give another name"
+                    f"{str(part)!r} holds {counted(done, 'frame')} of an interrupted run; finish it or give "
+                    "another name"
                 )
             new = places.private(out, "new")
             store.create(self.dataset, new)

@@ -195,3 +195,24 @@ def test_a_very_early_ctrl_c_is_clean(tmp_path: Path) -> None:
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr.count("\n")) == (130, 1)
     assert done.stderr.startswith("torsade: interrupted before the first frame")
+
+
+def test_a_centerline_in_millimetres_and_semicolons(tmp_path: Path) -> None:
+    from torsade.knots import overhand
+
+    (x,) = overhand("0.2 mm").strands
+    rows = [f"0;{1e3 * a!r};{1e3 * b!r};{1e3 * c!r}" for a, b, c in x.tolist()]
+    (tmp_path / "mine.csv").write_text("strand;x;y;z\n" + "\n".join(rows))
+    short = ("--duration", "2 ms", "--frames", "1")
+    done = shell(
+        "run", "tighten", "--centerline", "mine.csv", "--length-unit", "mm", *short, "--json", cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["length_m"][0] == pytest.approx(0.02, rel=0.01)
+    assert "--length-unit" in shell("run", "tighten", "--centerline", "mine.csv", cwd=tmp_path).stderr
+
+
+def test_the_path_of_a_result_is_printed_in_one_line(tmp_path: Path) -> None:
+    name = "a" * 100 + ".zarr"
+    done = shell(*SHORT, "--out", name, cwd=tmp_path)
+    assert f"result{' ' * 20}{name}\n" in done.stdout

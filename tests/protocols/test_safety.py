@@ -118,6 +118,21 @@ def test_a_full_disk_leaves_no_rubbish(tmp_path: Path, monkeypatch: pytest.Monke
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_disk_that_is_full_at_the_first_frame(
+    part: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(part: Path, arrays: object) -> None:
+        with places.writing(part):
+            raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(store, "write_restart", full)
+    with pytest.raises(ts.TorsadeError, match=r"no space left on device\); give a place with room") as caught:
+        SPEC.run(out=tmp_path / "reef.zarr", overwrite=True)
+    assert "the frames until then" not in str(caught.value)
+    assert [p.name for p in tmp_path.iterdir()] == [part.name]  # as it was
+    assert ts.open(part).frames == 4
+
+
 def test_two_runs_do_not_write_to_one_place(tmp_path: Path) -> None:
     out = tmp_path / "reef.zarr"
 
@@ -245,3 +260,14 @@ def test_frames_are_on_disk_under_the_name_that_others_look_for(
     SPEC.run(look, tmp_path / "reef.zarr")
     assert seen
     assert min(seen) >= 3
+
+
+def test_without_a_cache_it_is_not_said_that_compiling_is_done_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    from torsade import _compile
+
+    monkeypatch.setattr(_compile, "CACHE", None)
+    said = []
+    SPEC.run(lambda share, note: said.append(note))
+    assert said[0] == (
+        "compiling the kernels (about a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
+    )

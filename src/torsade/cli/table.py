@@ -25,7 +25,9 @@ def print_table(result: Result, report: dict[str, Any]) -> None:
 
 def print_file(what: str, path: str) -> None:
     """Print where a file of the result is, as a further row of the table."""
-    _print([(what, path)])
+    # In one line, however long, so that it can be copied.
+    line = Text.assemble((f"{what:<{WIDTH}}", "bold"), "  ", path)
+    Console(highlight=False, soft_wrap=True).print(line)
 
 
 def _print(rows: Iterable[tuple[str, str]]) -> None:

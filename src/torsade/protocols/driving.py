@@ -97,10 +97,10 @@ def drive(
         recording.stop("interrupted")
         raise Interrupted(recording.reached, recording.done, recording.part) from None
     except TorsadeError as error:
-        if recording.part is None:
-            raise
         with suppress(TorsadeError):  # a full disk cannot take the last frames either
             recording.stop("failed")
+        if recording.part is None:
+            raise
         raise TorsadeError(
             f"{str(error).rstrip('.')} (the frames until then are in {str(recording.part)!r})"
         ) from None

@@ -7,6 +7,8 @@ import threading
 from collections.abc import Callable
 from pathlib import Path
 
+from torsade.errors import counted
+
 __all__ = ["Interrupted", "Patience"]
 
 
@@ -54,5 +56,6 @@ class Interrupted(KeyboardInterrupt):
     def __init__(self, time: float, frames: int, part: Path | None) -> None:
         self.time, self.frames, self.part = time, frames, part
         reached = f"at t = {time:.4g} s" if frames else "before the first frame"
-        kept = "nothing is saved" if part is None else f"{frames} frames are saved in {str(part)!r}"
+        what = f"{counted(frames, 'frame')} {'is' if frames == 1 else 'are'} saved"
+        kept = "nothing is saved" if part is None else f"{what} in {str(part)!r}"
         super().__init__(f"interrupted {reached}; {kept}")

@@ -59,7 +59,7 @@ def sentence(spec: type[Spec], error: ValidationError) -> str:
         dimension = dimension_of(field)
         what = f"a {dimension.name}" if dimension else "a number"
         unit = f" {dimension.unit}" if dimension and dimension.unit else ""
-        return f"{name} is {given}; give {what} {word} {context[key]:g}{unit}"
+        return f"{name} is {given}; give {what} {word} {quoted(context[key])}{unit}"
     return f"{name} is {given}; {_expected(spec, name)}"
 
 
