@@ -179,7 +179,7 @@ def preset(name: str) -> Preset:
         return MATERIALS[name]
     from difflib import get_close_matches
 
-    near = get_close_matches(str(name).lower(), MATERIALS, n=1, cutoff=0.4)
+    near = get_close_matches(str(name).lower(), MATERIALS, n=1, cutoff=0.6)
     hint = f"did you mean {near[0]!r}? " if near else ""
     raise TorsadeError(f"unknown material {name!r}; {hint}choose one of {', '.join(sorted(MATERIALS))}")
 

@@ -101,6 +101,7 @@ class Recording:
         self.checkpoint: Checkpoint | None = None
         self.complete = False
         self.wall = 0.0
+        self._steps = 0
         self.part: Path | None = None
         self._out: Path | None = None
         self._lock: places.Lock | None = None
@@ -188,15 +189,23 @@ class Recording:
             self.wall = float(saved["wall"])
             state = State(*(saved[name] for name in State._fields))
             self.checkpoint = Checkpoint(state, saved["clock_time"], saved["clock_counts"])
+            self._steps = int(self.checkpoint.counts[0])
             store.set_attributes(part, self._progress())
-            before = Result.open(part).dataset
-            for name, values in self._arrays.items():
-                values[: self._count(name)] = before[name].values
+            self._read(part)
+        elif int(found["done"]) == len(self._arrays["time"]):  # only the end is missing
+            self.done, self.sampled = self._written = int(found["done"]), int(found["sampled"])
+            self._steps, self.wall = int(found["steps"]), float(found["wall_s"])
+            self._read(part)
         else:
             raise TorsadeError(
                 f"{str(part)!r} holds {counted(found['done'], 'frame')}, but no state to go on from; open it "
                 "for the frames, or give --overwrite (overwrite=True) in place of resume to begin anew"
             )
+
+    def _read(self, part: Path) -> None:
+        before = Result.open(part).dataset
+        for name, values in self._arrays.items():
+            values[: self._count(name)] = before[name].values
 
     def add(self, frame: Frame) -> None:
         """Record a frame."""
@@ -213,6 +222,7 @@ class Recording:
     def keep(self, checkpoint: Checkpoint, wall: float) -> None:
         """Hold the state behind what was recorded last, and the computing time so far [s]."""
         self.checkpoint, self.wall = checkpoint, wall
+        self._steps = int(checkpoint.counts[0])
         if time.monotonic() - self._flushed > FLUSH_EVERY:
             self.flush()
 
@@ -309,11 +319,10 @@ class Recording:
         return {"time": self.done, "sample": self.sampled}
 
     def _progress(self) -> dict[str, Any]:
-        steps = 0 if self.checkpoint is None else int(self.checkpoint.counts[0])
         return {
             "done": self.done,
             "sampled": self.sampled,
-            "steps": steps,
+            "steps": self._steps,
             "wall_s": self.wall,
             "status": self.attrs["status"],
         }

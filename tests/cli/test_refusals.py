@@ -53,6 +53,8 @@ BEND = ("run", "prison-escape")
             ("run", "--knot", "reef"),
             "--knot comes without a protocol; begin with torsade run",
         ),
+        (("run", "--knot=reef"), "--knot comes without a protocol; begin"),
+        (("run", "--json", "--spec"), "--spec has no value"),
         (("run", "--json", "--spec", "none.toml"), "there is no file 'none.toml'"),
         ((*BEND, "--knot", "reef", "--diameter", "1 mm"), "give --radius, half of it"),
         ((*BEND, "--knot", "reef", "--length", "1 m"), "a built-in knot takes --lead"),

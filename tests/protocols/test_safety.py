@@ -95,6 +95,18 @@ def test_a_missing_or_damaged_state_is_named(part: Path, content: object) -> Non
     assert ts.open(part).frames == 4
 
 
+def test_a_run_with_all_its_frames_is_finished_without_a_state(tmp_path: Path) -> None:
+    out = tmp_path / "reef.zarr"
+    whole = SPEC.run(out=out)
+    part = tmp_path / "reef.zarr.part"
+    out.rename(part)
+    store.set_attributes(part, {"status": "running", "c_f": None})
+    again = SPEC.run(out=out, resume=True)
+    assert again.dataset.equals(whole.dataset)
+    assert again.c_f == whole.c_f
+    assert ts.open(out).dataset.attrs["steps"] == whole.dataset.attrs["steps"] > 0
+
+
 def test_what_is_called_replaced_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "reef.zarr.replaced").mkdir()
     (tmp_path / "reef.zarr.replaced" / "thesis.tex").write_text("years of work")

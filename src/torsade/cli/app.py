@@ -97,9 +97,10 @@ def with_protocol(arguments: list[str]) -> list[str]:
         from torsade.protocols.files import PROTOCOLS
 
         known = " or ".join(f"torsade run {name}" for name in PROTOCOLS)
-        raise TorsadeError(f"{arguments[1]} comes without a protocol; begin with {known}")
+        option = arguments[1].partition("=")[0]
+        raise TorsadeError(f"{option} comes without a protocol; begin with {known}")
     if not path:
-        return arguments
+        raise TorsadeError("--spec has no value; give a TOML file after it, such as --spec reef.toml")
     from torsade.protocols.files import read_fields
 
     return ["run", read_fields(path)["protocol"], *arguments[1:]]

@@ -223,7 +223,7 @@ def _record(
 ) -> float | None:
     """Move from stop to stop to the end; returns when nothing resisted the load any more [s], or None."""
     began = time.perf_counter() - recording.wall
-    before = motion.time if recording.checkpoint is not None else -math.inf
+    before = max(recording.reached, motion.time) if recording.done else -math.inf
     for t, frame, sample in _stops(spec, experiment):
         if t <= before:
             continue
