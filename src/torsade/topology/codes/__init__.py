@@ -7,6 +7,7 @@
 | Dowker-Thistlethwaite | `from_dt` | `to_dt` |
 | braid word | `from_braid` | |
 | Conway notation | `from_conway` | |
+| any of these as text | `from_text` | |
 """
 
 from torsade.topology.codes.braid import from_braid
@@ -14,13 +15,16 @@ from torsade.topology.codes.conway import from_conway
 from torsade.topology.codes.dowker import from_dt, to_dt
 from torsade.topology.codes.gauss import from_gauss, to_gauss, to_unsigned_gauss
 from torsade.topology.codes.pd import from_pd, to_open_pd, to_pd
+from torsade.topology.codes.text import code_kind, from_text
 
 __all__ = [
+    "code_kind",
     "from_braid",
     "from_conway",
     "from_dt",
     "from_gauss",
     "from_pd",
+    "from_text",
     "to_dt",
     "to_gauss",
     "to_open_pd",
