@@ -14,7 +14,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from torsade import curve, knots, protocols, view
+    from torsade import curve, knots, protocols, topology, view
     from torsade.centerline import Centerline, read_csv, write_csv
     from torsade.errors import TorsadeError
     from torsade.material import MATERIALS, Material, Section, material
@@ -35,13 +35,14 @@ __all__ = [
     "open",
     "protocols",
     "read_csv",
+    "topology",
     "view",
     "write_csv",
 ]
 
 __version__ = "0.1.0"
 
-_MODULES = ("curve", "knots", "material", "protocols", "view")
+_MODULES = ("curve", "knots", "material", "protocols", "topology", "view")
 _HOMES = {
     "MATERIALS": "torsade.material",
     "Centerline": "torsade.centerline",

@@ -36,6 +36,20 @@ EXAMPLES = {
     "tighten": '--knot overhand --force "20 mN" --out overhand.zarr --picture overhand.png',
 }
 
+TOPOLOGY_EXAMPLES = """Examples:
+
+torsade topology reef
+
+torsade topology zeppelin --pulled A1B0 --json
+
+torsade topology 5,-3
+
+torsade topology "m3_1#3_1"
+
+torsade topology "X[1,5,2,4] X[3,1,4,6] X[5,3,6,2]"
+
+torsade topology mine.csv --length-unit mm"""
+
 _WHAT = Group("What to do", sort_key=1)
 _OUTPUT = Group("Input and output", sort_key=2)
 
@@ -57,6 +71,7 @@ def build(arguments: list[str]) -> App:
         suppress_keyboard_interrupt=False,
     )
     app.command(_demo, name="demo", help_epilogue="", version_flags=[])
+    app.command(_topology, name="topology", help_epilogue=TOPOLOGY_EXAMPLES, version_flags=[])
     run = App(
         name="run",
         help="Run an experiment: prison-escape (pull a bend) or tighten (pull a knot in one strand).",
@@ -115,6 +130,45 @@ def _demo(
     from torsade.cli.commands import demo
 
     return demo(out, json)
+
+
+def _topology(
+    given: Annotated[
+        str,
+        Parameter(
+            name="NAME|CODE|FILE",
+            allow_leading_hyphen=True,
+            help="A name: a bend (reef, thief, carrick, zeppelin ...), a knot or link through 10 or 8 "
+            "crossings (3_1, m3_1#4_1, L5a1, unknot), a suture (5,-3). Or a code: PD as X[1,5,2,4] X[3,1,4,6] "
+            "... or [[1,5,2,4],...], DT: 4 6 2, signed Gauss O1+ U2+ ..., unsigned Gauss: -1 2 ..., a braid "
+            "in braces {1,-2,1,-2} or after braid:, Conway notation in brackets [3 2] or after C. Or a file: "
+            "CSV with columns strand,x,y,z; a strand that ends with its first node is closed.",
+        ),
+    ],
+    /,
+    *,
+    pulled: Annotated[
+        str | None,
+        Parameter(help="Ends of open strands towards which these run, such as A1B0 [default: the name's]."),
+    ] = None,
+    drawings: Annotated[
+        str,
+        Parameter(help="How many drawings to look at for the range of Gamma; 0 for none [default: 500]."),
+    ] = "500",
+    length_unit: Annotated[str, Parameter(help="Unit of x, y, z in a file [default: m].")] = "m",
+    json: Annotated[bool, Parameter(help=OPTIONS["json"][1])] = False,
+) -> int:
+    """Say which knot, link or bend this is: crossings, signs, tau, Gamma, invariants and names.
+
+    A right-handed crossing counts +1; linking numbers are half the sum of signs.
+
+    Strands of a bend run towards the pulled ends.
+
+    An m before a name takes the mirror image; 3_1 is right-handed.
+    """
+    from torsade.cli.topology import topology
+
+    return topology(given, pulled, drawings, length_unit, json)
 
 
 def _protocol_command(spec: type[Spec]) -> Callable[..., int]:

@@ -12,7 +12,7 @@ from rich.text import Text
 if TYPE_CHECKING:
     from torsade.results import Result
 
-__all__ = ["print_file", "print_table"]
+__all__ = ["print_file", "print_rows", "print_table"]
 
 WIDTH = 24
 """Of the first column: the longest name in it."""
@@ -20,7 +20,7 @@ WIDTH = 24
 
 def print_table(result: Result, report: dict[str, Any]) -> None:
     """Print what was done and what came of it."""
-    _print((*_asked(result), *_found(result, report), *_spent(report)))
+    print_rows((*_asked(result), *_found(result, report), *_spent(report)))
 
 
 def print_file(what: str, path: str) -> None:
@@ -30,7 +30,8 @@ def print_file(what: str, path: str) -> None:
     Console(highlight=False, soft_wrap=True).print(line)
 
 
-def _print(rows: Iterable[tuple[str, str]]) -> None:
+def print_rows(rows: Iterable[tuple[str, str]]) -> None:
+    """Print names and values, a row for each."""
     table = Table(show_header=False, box=None, pad_edge=False)
     table.add_column(style="bold", no_wrap=True, min_width=WIDTH)
     table.add_column(overflow="fold")

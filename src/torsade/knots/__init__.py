@@ -1,6 +1,20 @@
-"""Knots ready to be pulled."""
+"""Knots ready to be pulled, and bends and sutures as diagrams."""
 
+from torsade.knots.bends import Bend, bend_diagram, bend_names, find_bend
 from torsade.knots.overhand import STRAND_KNOTS, overhand
 from torsade.knots.stacked import BENDS, PULLS, BuiltBend, bend
+from torsade.knots.sutures import suture_diagram
 
-__all__ = ["BENDS", "PULLS", "STRAND_KNOTS", "BuiltBend", "bend", "overhand"]
+__all__ = [
+    "BENDS",
+    "PULLS",
+    "STRAND_KNOTS",
+    "Bend",
+    "BuiltBend",
+    "bend",
+    "bend_diagram",
+    "bend_names",
+    "find_bend",
+    "overhand",
+    "suture_diagram",
+]

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
 
+from torsade.centerline import Centerline
 from torsade.errors import TorsadeError
 from torsade.topology.canonical import canonical_form
 from torsade.topology.diagram import Diagram
@@ -27,6 +28,7 @@ from torsade.topology.moves import (
     slide_triangle,
     triangles,
 )
+from torsade.topology.projection import project
 
 __all__ = [
     "Face", "Range", "State", "circulation_range", "pull_choices", "state", "twist_fluctuation", "whitney_index"
@@ -105,14 +107,18 @@ def twist_fluctuation(charges: Iterable[int]) -> tuple[float, float, float]:
     return float(spread), float(1 - mean**2), float(1 - Fraction(1, n) - Fraction(2 * pairs, n * n))
 
 
-def state(diagram: Diagram, pulled: str | Iterable[str] | None = None) -> State:
+def state(knot: Diagram | Centerline, pulled: str | Iterable[str] | None = None) -> State:
     """Count on a drawing, its strands running as they do or towards the pulled ends.
 
     Args:
-        diagram: of a knot, link or tangle.
-        pulled: names of the pulled ends, as in `Diagram.pulled`.
+        knot: a diagram of a knot, link or tangle; or a centerline, which is looked at along z.
+        pulled: names of the pulled ends, as in `Diagram.pulled`. A bend that says which ends are pulled, as
+            those of `torsade.knots.bend` do, need not be told.
     """
-    drawn = diagram if pulled is None else diagram.pulled(pulled)
+    if isinstance(knot, Centerline):
+        pulled = getattr(knot, "pulled", None) if pulled is None else pulled
+        knot = project(knot.strands, knot.closed).diagram
+    drawn = knot if pulled is None else knot.pulled(pulled)
     faces = tuple(
         Face(len(face), drawn.circulation(f), drawn.is_bounded(f)) for f, face in enumerate(drawn.faces)
     )

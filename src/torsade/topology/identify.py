@@ -26,7 +26,7 @@ from scipy.spatial.transform import Rotation
 
 from torsade.curve import perpendicular
 from torsade.errors import TorsadeError
-from torsade.topology.codes import to_pd
+from torsade.topology.codes import from_gauss, to_pd
 from torsade.topology.diagram import Diagram
 from torsade.topology.factor import summands
 from torsade.topology.invariants import Code, oriented
@@ -36,7 +36,9 @@ from torsade.topology.names import prime_factors, split_union, sum_name
 from torsade.topology.projection import project
 from torsade.topology.simplify import simplify
 
-__all__ = ["Identity", "OpenIdentity", "identify", "identify_curves", "identify_open", "identify_pd"]
+__all__ = [
+    "Identity", "OpenIdentity", "identify", "identify_curves", "identify_open", "identify_pd", "identify_strands"
+]  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +87,23 @@ def identify(diagram: Diagram, patience: int = 100) -> Identity:
 def identify_curves(curves: Sequence[ArrayLike]) -> Identity:
     """Which knot or link closed polylines are, each of shape (n, 3) without repeating its first node."""
     return identify(project(curves, True).diagram)
+
+
+def identify_strands(diagram: Diagram) -> tuple[Identity, ...]:
+    """Which knot each strand is without the others, its ends joined around the outside if it is open.
+
+    >>> from torsade.topology.codes import from_braid
+    >>> [str(strand) for strand in identify_strands(from_braid([1, 1, 1, 2, 2]))]
+    ['3_1', '0_1']
+    """
+    found = []
+    for strand in diagram.strands:
+        at = [q >> 2 for q in strand]
+        own = [q for q in strand if at.count(q >> 2) == 2]
+        sign = {q >> 2: "+" if diagram.signs[q >> 2] > 0 else "-" for q in own}
+        code = " ".join(f"{'UO'[q & 1]}{q >> 2}{sign[q >> 2]}" for q in own)
+        found.append(identify(from_gauss(code) if code else Diagram.circle()))
+    return tuple(found)
 
 
 @dataclass(frozen=True, slots=True)

@@ -123,9 +123,7 @@ def _integers(text: str, kind: str, example: str) -> list[int]:
     words = [word for word in re.split(r"[\s,;]+", text) if word]
     wrong = [word for word in words if not _is_integer(word)]
     if wrong:
-        raise TorsadeError(
-            f"{quoted(wrong[0])} in the {kind} is no integer; give integers such as {example}"
-        )
+        raise TorsadeError(f"{quoted(wrong[0])} in the {kind} is no integer; give integers such as {example}")
     return [int(word) for word in words]
 
 

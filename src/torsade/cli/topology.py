@@ -1,0 +1,205 @@
+"""What `torsade topology` finds out: one dictionary, for the table and for `--json`.
+
+Keys are always the same; what does not apply is None.
+"""
+
+from __future__ import annotations
+
+import json as json_format
+import re
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from torsade.cli.subject import Subject, subject
+from torsade.errors import TorsadeError
+from torsade.knots.bends import find_bend
+from torsade.topology.codes import to_pd
+from torsade.topology.counting import State, circulation_range, pull_choices, state
+from torsade.topology.diagram import Diagram
+from torsade.topology.identify import Identity, identify, identify_open, identify_strands
+from torsade.topology.invariants import Laurent, alexander, determinant, jones, oriented, signature
+from torsade.topology.measures import average_crossing_number, writhe_matrix
+from torsade.topology.simplify import simplify
+from torsade.topology.tangle import closures
+
+__all__ = ["report", "topology"]
+
+DIRECTIONS = 100
+"""In how many directions an open strand is closed at infinity."""
+
+CHOICES = 16
+"""Of pulled ends, as many are listed: all those of four strands."""
+
+MOST_CROSSINGS = 60
+"""Drawings of tangles with more crossings are counted, but not redrawn to find the range of Gamma."""
+
+
+def topology(given: str, pulled: str | None, drawings: str, length_unit: str, json: bool) -> int:
+    """Read, find out, print."""
+    found = report(subject(given, length_unit), pulled, _drawings(drawings))
+    if json:
+        print(json_format.dumps(found, allow_nan=False), flush=True)
+        return 0
+    from torsade.cli.table import print_rows
+    from torsade.cli.topology_table import rows
+
+    print_rows(rows(found))
+    return 0
+
+
+def _drawings(text: str) -> int:
+    if not re.fullmatch(r"\d{1,6}", text.strip(), re.A):
+        raise TorsadeError(f"--drawings is {text!r}; give a whole number from 0 to 999999, such as 500")
+    return int(text)
+
+
+def report(given: Subject, pulled: str | None, drawings: int) -> dict[str, Any]:
+    """Everything that is found out.
+
+    Args:
+        given: what it is about.
+        pulled: ends named by the user.
+        drawings: at how many drawings to look for the range of Gamma; 0 leaves it out.
+    """
+    diagram = given.diagram
+    ends = _pulled(given, pulled)
+    drawn = diagram if ends is None else diagram.pulled(ends)
+    simpler = simplify(drawn)
+    found: dict[str, Any] = {
+        "input": given.given,
+        "kind": given.kind,
+        "title": given.title,
+        "strands": diagram.n_strands,
+        "ends": list(diagram.ends),
+        "pulled": ends,
+        **_counted(state(drawn)),
+        "charges": list(drawn.signs),
+        "linking": drawn.linking.tolist() if drawn.n_strands > 1 else None,
+        "faces": _faces(state(drawn)),
+        "fewest": _counted(state(simpler)),
+    }
+    found |= _of_tangle(given, drawn, ends, drawings) if diagram.ends else _of_closed(simpler)
+    return found | _of_curves(given)
+
+
+def _pulled(given: Subject, pulled: str | None) -> str | None:
+    """The names of the pulled ends, in the order of strands."""
+    if not given.diagram.ends:
+        if pulled is not None:
+            raise TorsadeError(f"--pulled is {pulled!r}, but all strands are closed; leave it out")
+        return None
+    if pulled is None:
+        return given.pulled or "".join(next(pull_choices(given.diagram)))
+    names = re.findall(r"[A-Z]+\d+", pulled.strip().upper())
+    given.diagram.pulled(names if "".join(names) == pulled.strip().upper() else [pulled])
+    return "".join(sorted(names))
+
+
+def _counted(counts: State) -> dict[str, Any]:
+    return {
+        "crossings": counts.crossings,
+        "writhe": counts.writhe,
+        "tau": counts.tau,
+        "circulation": counts.gamma,
+        "whitney": counts.whitney,
+    }
+
+
+def _faces(counts: State) -> list[dict[str, Any]]:
+    return [{"edges": f.edges, "circulation": f.circulation, "bounded": f.bounded} for f in counts.faces]
+
+
+def _of_tangle(given: Subject, drawn: Diagram, ends: str | None, drawings: int) -> dict[str, Any]:
+    """What is said of open strands."""
+    spread = None
+    if drawings and drawn.n_crossings <= MOST_CROSSINGS:
+        found = circulation_range(drawn, limit=drawings)
+        spread = {
+            "least": found.least,
+            "greatest": found.greatest,
+            "crossings": found.crossings,
+            "drawings": found.drawings,
+            "complete": found.complete,
+        }
+    closed = [(joins, identify(diagram)) for joins, diagram in closures(drawn)] if _few(drawn) else []
+    return {
+        "circulation_range": spread,
+        "pulls": [
+            {"pulled": "".join(choice), "name": _pull_name(given, "".join(choice))}
+            | _counted(state(drawn, choice))
+            for choice in islice(pull_choices(drawn), CHOICES)
+        ],
+        "strand_types": [_identity(one) for one in identify_strands(drawn)],
+        "closures": [{"joins": ["-".join(two) for two in joins], **_identity(one)} for joins, one in closed],
+        **dict.fromkeys(("names", "certain", "reason", "alexander", "determinant", "signature", "jones")),
+    }
+
+
+def _few(drawn: Diagram) -> bool:
+    """Whether there are few ways to join the ends: 14 of four strands, 429 of seven."""
+    return len(drawn.ends) <= 8
+
+
+def _pull_name(given: Subject, pulled: str) -> str | None:
+    return find_bend(given.given)[0].pulls.get(pulled) if given.kind == "bend" else None
+
+
+def _of_closed(simpler: Diagram) -> dict[str, Any]:
+    """What is said of knots and links; the diagram has been simplified."""
+    code = oriented(to_pd(simpler.without_circles()), simpler.circles)
+    one = identify(simpler, patience=0)
+    try:
+        v = _polynomial(jones(code))
+    except TorsadeError:  # too wide; the reason is in the identity
+        v = None
+    return {
+        "circulation_range": None,
+        "pulls": None,
+        "strand_types": [_identity(part) for part in one.components] or None,
+        "closures": None,
+        "names": list(one.names),
+        "certain": one.certain,
+        "reason": one.reason or None,
+        "alexander": _polynomial(alexander(code)),
+        "determinant": determinant(code),
+        "signature": signature(code),
+        "jones": v,
+    }
+
+
+def _of_curves(given: Subject) -> dict[str, Any]:
+    """What is measured in space, of a file."""
+    if given.centerline is None or given.projection is None:
+        return dict.fromkeys(("writhe_3d", "acn", "linking_3d", "projection", "closed_at_infinity"))
+    x, closed = given.centerline.strands, given.centerline.closed
+    matrix = writhe_matrix(x, closed)
+    seen = given.projection
+    return {
+        "writhe_3d": float(matrix.sum()),
+        "acn": average_crossing_number(x, closed),
+        "linking_3d": (matrix - np.diag(np.diag(matrix))).tolist() if len(x) > 1 else None,
+        "projection": {
+            "direction": seen.direction.tolist(),
+            "refused": list(seen.refused),
+            "led_out": seen.n_led_out,
+        },
+        "closed_at_infinity": [
+            None if shut else identify_open(nodes, DIRECTIONS).fractions
+            for nodes, shut in zip(x, closed, strict=True)
+        ],
+    }
+
+
+def _identity(one: Identity) -> dict[str, Any]:
+    return {
+        "names": list(one.names),
+        "certain": one.certain,
+        "reason": one.reason or None,
+        "linking": [list(row) for row in one.linking] if one.linking else None,
+    }
+
+
+def _polynomial(p: Laurent) -> dict[str, Any]:
+    return {"text": str(p), "lowest": float(p.lowest), "coefficients": list(p.coefficients)}

@@ -1,0 +1,144 @@
+"""The table that `torsade topology` prints for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from torsade.errors import counted
+from torsade.topology.diagram import strand_name
+
+__all__ = ["rows"]
+
+
+def rows(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Names and values of a report."""
+    yield from _what(found)
+    yield from _counts(found)
+    if found["ends"]:
+        yield from _tangle(found)
+    else:
+        yield from _closed(found)
+    if found["projection"]:
+        yield from _space(found)
+
+
+def _what(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    read = "" if found["kind"] in ("bend", "name") else f", read as a {found['kind']}"
+    yield "given", found["input"] + read
+    if found["kind"] == "bend":
+        yield "bend", found["title"]
+    if not found["ends"]:
+        yield "name", _name(found)
+        if found["reason"]:
+            yield "", found["reason"]
+    open_strands = len(found["ends"]) // 2
+    closed = found["strands"] - open_strands
+    parts = [
+        *([f"{open_strands} open, ends {' '.join(found['ends'])} around it"] if open_strands else []),
+        *([f"{closed} closed"] if closed else []),
+    ]
+    yield "strands", ", ".join(parts)
+    if found["pulled"]:
+        name = next((p["name"] for p in found["pulls"] if p["pulled"] == found["pulled"]), None)
+        yield "pulled", found["pulled"] + (f": {name}" if name else "")
+
+
+def _counts(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    n, wr = found["crossings"], found["writhe"]
+    right = found["charges"].count(1)
+    hands = f", {right} right-handed and {n - right} left-handed" if n else ""
+    yield "crossings N", f"{n}{hands}"
+    yield "writhe Wr", _signed(wr)
+    if found["linking"]:
+        yield "linking, half-sum", _matrix(found["linking"])
+    yield "twist fluctuation tau", f"{found['tau']:.4g}"
+    yield "circulation Gamma", f"{found['circulation']:.4g}"
+    spread = found["circulation_range"]
+    if spread:
+        yield "", _spread(spread)
+    yield "Whitney index", _signed(found["whitney"])
+    fewest = found["fewest"]
+    if fewest["crossings"] < n:
+        yield (
+            "with fewest crossings",
+            f"N {fewest['crossings']}, Wr {_signed(fewest['writhe'])}, tau {fewest['tau']:.4g}, "
+            f"Gamma {fewest['circulation']:.4g}, Whitney {_signed(fewest['whitney'])}",
+        )
+
+
+def _spread(spread: dict[str, Any]) -> str:
+    low, high = f"{spread['least']:.4g}", f"{spread['greatest']:.4g}"
+    drawn = f"{counted(spread['drawings'], 'drawing')} of {counted(spread['crossings'], 'crossing')}"
+    value = low if low == high else f"{low} to {high}"
+    more = "all that were found" if spread["complete"] else "there may be more: see --drawings"
+    return f"{value} over {drawn}, ends in place; {more}"
+
+
+def _tangle(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    for pull in found["pulls"]:
+        if pull["pulled"] != found["pulled"]:
+            name = f": {pull['name']}" if pull["name"] else ""
+            numbers = (
+                f"Wr {_signed(pull['writhe'])}, tau {pull['tau']:.4g}, "
+                f"Gamma {pull['circulation']:.4g}, Whitney {_signed(pull['whitney'])}"
+            )
+            yield f"  pulled {pull['pulled']}", f"{numbers}{name}"
+    yield from _strands(found["strand_types"])
+    for closure in found["closures"]:
+        lk = f", Lk {_signed(closure['linking'][0][1])}" if _is_pair(closure["linking"]) else ""
+        yield f"joined {' '.join(closure['joins'])}", _name(closure) + lk
+
+
+def _strands(types: Iterable[dict[str, Any]]) -> Iterator[tuple[str, str]]:
+    for k, one in enumerate(types):
+        yield f"strand {strand_name(k)} alone", _name(one)
+
+
+def _is_pair(linking: list[list[int]] | None) -> bool:
+    return linking is not None and len(linking) == 2
+
+
+def _closed(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    yield from _strands(found["strand_types"] or ())
+    yield "Alexander polynomial", found["alexander"]["text"]
+    yield "determinant", str(found["determinant"])
+    yield "signature", _signed(found["signature"])
+    yield "Jones polynomial", found["jones"]["text"] if found["jones"] else "not computed: too wide"
+
+
+def _space(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    seen = found["projection"]
+    direction = ", ".join(f"{x:.3g}" for x in seen["direction"])
+    others = (
+        f" ({counted(len(seen['refused']), 'direction')} showed no clear drawing)" if seen["refused"] else ""
+    )
+    yield "seen along", f"({direction}){others}"
+    yield "writhe in space", f"{found['writhe_3d']:+.4f}"
+    yield "average crossing number", f"{found['acn']:.4f}"
+    if found["linking_3d"]:
+        yield "linking in space", _matrix(found["linking_3d"])
+    for k, fractions in enumerate(found["closed_at_infinity"]):
+        if fractions:
+            shares = ", ".join(f"{name} {100 * share:.0f} %" for name, share in list(fractions.items())[:4])
+            yield f"strand {strand_name(k)}, at infinity", shares
+
+
+def _name(one: dict[str, Any]) -> str:
+    """The names, and whether they are proven."""
+    if not one["names"]:
+        return "not in the table"
+    names = " or ".join("unknot" if name == "0_1" else name for name in one["names"])
+    return names if one["certain"] else f"{names} (not certain)"
+
+
+def _matrix(rows: list[list[float]]) -> str:
+    """The numbers above the diagonal, with the strands they belong to if there are several."""
+    pairs = [(i, j) for i in range(len(rows)) for j in range(i + 1, len(rows))]
+    if len(pairs) == 1:
+        return _signed(rows[0][1])
+    return ", ".join(f"{strand_name(i)}-{strand_name(j)}: {_signed(rows[i][j])}" for i, j in pairs)
+
+
+def _signed(number: float) -> str:
+    return f"{number:+.4g}" if number else "0"
