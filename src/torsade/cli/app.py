@@ -139,10 +139,10 @@ def _topology(
             name="NAME|CODE|FILE",
             allow_leading_hyphen=True,
             help="A name: a bend (reef, thief, carrick, zeppelin ...), a knot or link through 10 or 8 "
-            "crossings (3_1, m3_1#4_1, L5a1, unknot), a suture (5,-3). Or a code: PD as X[1,5,2,4] X[3,1,4,6] "
-            "... or [[1,5,2,4],...], DT: 4 6 2, signed Gauss O1+ U2+ ..., unsigned Gauss: -1 2 ..., a braid "
-            "in braces {1,-2,1,-2} or after braid:, Conway notation in brackets [3 2] or after C. Or a file: "
-            "CSV with columns strand,x,y,z; a strand that ends with its first node is closed.",
+            "crossings (3_1, m3_1#4_1, L5a1, unknot), a suture (5,-3). Or a code: PD as X[1,5,2,4] "
+            "X[3,1,4,6] ... or [[1,5,2,4],...], DT: 4 6 2, signed Gauss O1+ U2+ ..., unsigned Gauss: -1 2 "
+            "..., a braid in braces {1,-2,1,-2} or after braid:, Conway notation in brackets [3 2] or after "
+            "C. Or a file: CSV with columns strand,x,y,z; a strand that ends with its first node is closed.",
         ),
     ],
     /,

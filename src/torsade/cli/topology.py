@@ -80,7 +80,7 @@ def report(given: Subject, pulled: str | None, drawings: int) -> dict[str, Any]:
         "faces": _faces(state(drawn)),
         "fewest": _counted(state(simpler)),
     }
-    found |= _of_tangle(given, drawn, ends, drawings) if diagram.ends else _of_closed(simpler)
+    found |= _of_tangle(given, drawn, simpler, drawings) if diagram.ends else _of_closed(simpler)
     return found | _of_curves(given)
 
 
@@ -111,11 +111,11 @@ def _faces(counts: State) -> list[dict[str, Any]]:
     return [{"edges": f.edges, "circulation": f.circulation, "bounded": f.bounded} for f in counts.faces]
 
 
-def _of_tangle(given: Subject, drawn: Diagram, ends: str | None, drawings: int) -> dict[str, Any]:
+def _of_tangle(given: Subject, drawn: Diagram, simpler: Diagram, drawings: int) -> dict[str, Any]:
     """What is said of open strands."""
     spread = None
-    if drawings and drawn.n_crossings <= MOST_CROSSINGS:
-        found = circulation_range(drawn, limit=drawings)
+    if drawings and simpler.n_crossings <= MOST_CROSSINGS:
+        found = circulation_range(simpler, limit=drawings)
         spread = {
             "least": found.least,
             "greatest": found.greatest,

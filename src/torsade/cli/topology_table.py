@@ -110,9 +110,8 @@ def _closed(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
 def _space(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     seen = found["projection"]
     direction = ", ".join(f"{x:.3g}" for x in seen["direction"])
-    others = (
-        f" ({counted(len(seen['refused']), 'direction')} showed no clear drawing)" if seen["refused"] else ""
-    )
+    refused = len(seen["refused"])
+    others = f" ({counted(refused, 'direction')} showed no clear drawing)" if refused else ""
     yield "seen along", f"({direction}){others}"
     yield "writhe in space", f"{found['writhe_3d']:+.4f}"
     yield "average crossing number", f"{found['acn']:.4f}"

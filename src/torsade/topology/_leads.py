@@ -128,5 +128,5 @@ def _ordered(draft: Draft, order: list[int], names: list[str]) -> Diagram:
         place.get(draft.mate[p], draft.mate[p]) for p in order
     ]
     starts = [place.get(s, s) for s in draft.starts]
-    outer = [place.get(p, p) for p in draft.outer]
+    outer = [p for p in draft.outer if p >= 0]  # a piece with ends has its outer faces around them
     return Diagram.assemble(mate, starts, [names[end] for end in order], outer=outer)

@@ -31,8 +31,15 @@ from torsade.topology.moves import (
 from torsade.topology.projection import project
 
 __all__ = [
-    "Face", "Range", "State", "circulation_range", "pull_choices", "state", "twist_fluctuation", "whitney_index"
-]  # fmt: skip
+    "Face",
+    "Range",
+    "State",
+    "circulation_range",
+    "pull_choices",
+    "state",
+    "twist_fluctuation",
+    "whitney_index",
+]
 
 
 @dataclass(frozen=True)
@@ -155,8 +162,7 @@ def whitney_index(diagram: Diagram) -> int:
     outside = {regions[f] for f in diagram.outer_faces}
     index = diagram.circles
     for k in range(loops):
-        left, right = sides[k]
-        index += 1 if _reaches(right, outside, sides[:k] + sides[k + 1 :]) else -1
+        index += 1 if _reaches(sides[k][1], outside, sides[:k] + sides[k + 1 :]) else -1
     return index
 
 

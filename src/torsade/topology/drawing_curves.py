@@ -85,7 +85,7 @@ def _layers(letters: list[int], width: int) -> list[list[int]]:
 
 
 def _cycles(at: list[int]) -> list[list[int]]:
-    """Strands in the order in which they follow one another: the one that ends at place k goes on as strand k."""
+    """Strands as they follow one another: the one that ends at place k goes on as strand k."""
     following = {strand: place for place, strand in enumerate(at)}
     cycles: list[list[int]] = []
     while following:

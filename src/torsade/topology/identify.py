@@ -37,8 +37,14 @@ from torsade.topology.projection import project
 from torsade.topology.simplify import simplify
 
 __all__ = [
-    "Identity", "OpenIdentity", "identify", "identify_curves", "identify_open", "identify_pd", "identify_strands"
-]  # fmt: skip
+    "Identity",
+    "OpenIdentity",
+    "identify",
+    "identify_curves",
+    "identify_open",
+    "identify_pd",
+    "identify_strands",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,8 +83,8 @@ def identify(diagram: Diagram, patience: int = 100) -> Identity:
     """
     if diagram.ends:
         raise TorsadeError(
-            f"the diagram has ends {' '.join(diagram.ends)}; only closed curves are knots: close it first, or "
-            "use `identify_open` on a curve"
+            f"the diagram has ends {' '.join(diagram.ends)}; only closed curves are knots: close it first, "
+            "or use `identify_open` on a curve"
         )
     simpler = simplify(diagram, patience)
     return identify_pd(to_pd(simpler.without_circles()), simpler.circles)

@@ -2,7 +2,8 @@
 
 | code | as in |
 | --- | --- |
-| PD | `[[1,5,2,4],[3,1,4,6],[5,3,6,2]]`, `X[1,5,2,4] X[3,1,4,6] ...`, `PD[...]`; of a tangle `X[B2,A1,B3,A0] ...` |
+| PD | `[[1,5,2,4],[3,1,4,6],[5,3,6,2]]`, `X[1,5,2,4] X[3,1,4,6] ...`, `PD[...]` |
+| PD of a tangle | `X[B2,A1,B3,A0] ...`, with labels A0, A1 ... along strand A |
 | Dowker-Thistlethwaite | `DT: [4,6,2]`, `DT(4 6 2)`, of a link `DT: [(4,6),(2,8)]` |
 | Gauss, signed | `O1+ U2+ O3+ U1+ O2+ U3+`, with a bar between strands |
 | Gauss, unsigned | `Gauss: [-1,2,-3,1,-2,3]`, negative where over; of a link `Gauss: [[1,-2],[-1,2]]` |
@@ -48,8 +49,8 @@ def from_text(text: str) -> Diagram:
 
     >>> from_text("X[1,5,2,4] X[3,1,4,6] X[5,3,6,2]").signs
     (1, 1, 1)
-    >>> from_text("{1,-2,1,-2}").n_crossings, from_text("DT: [4,6,2]").n_crossings, from_text("[3 2]").n_crossings
-    (4, 3, 5)
+    >>> [from_text(code).n_crossings for code in ("{1,-2,1,-2}", "DT: [4,6,2]", "[3 2]")]
+    [4, 3, 5]
 
     Raises:
         TorsadeError: text in none of these forms, or a code that `from_pd` or its like refuses.
@@ -57,8 +58,8 @@ def from_text(text: str) -> Diagram:
     kind = code_kind(text)
     if kind is None:
         raise TorsadeError(
-            f"{quoted(text)} is no code; begin with X[ or [[ for PD, DT:, Gauss: or O1+, braid: or {{, C[ for "
-            "Conway notation"
+            f"{quoted(text)} is no code; begin with X[ or [[ for PD, DT:, Gauss: or O1+, braid: or {{, "
+            "C[ for Conway notation"
         )
     if len(text) > LONGEST:
         raise TorsadeError(f"the {kind} has {len(text)} characters; give at most {LONGEST}")
