@@ -34,7 +34,10 @@ def numbers(found: Any) -> list[float]:
     return [float(found)] if isinstance(found, int | float) else []
 
 
-@pytest.mark.parametrize("name", ["step", "kernels", "mobility", "start", "bends", "convergence", "writhe"])
+SCRIPTS = ("step", "kernels", "mobility", "start", "bends", "convergence", "writhe", "topology")
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
 def test_quick_mode_finds_finite_numbers(script: Any, name: str, capsys: pytest.CaptureFixture[str]) -> None:
     found = script(name).main(["--quick", "--json"])
     printed = json.loads(capsys.readouterr().out)

@@ -138,6 +138,8 @@ def slide_triangle(diagram: Diagram, dart: int) -> Diagram:
     arc = [dart ^ 2, dart, mate[dart], mate[dart] ^ 2]
     beyond = [mate[second] ^ 2, third ^ 2]
     draft.reroute(arc, beyond, over=True)
+    # The faces on the left of what the strand now crosses are cut: what was outside lies beyond it.
+    draft.outer = [draft.mate[p] ^ 2 if p in beyond else p for p in draft.outer]
     return draft.freeze()
 
 
