@@ -138,8 +138,15 @@ def slide_triangle(diagram: Diagram, dart: int) -> Diagram:
     arc = [dart ^ 2, dart, mate[dart], mate[dart] ^ 2]
     beyond = [mate[second] ^ 2, third ^ 2]
     draft.reroute(arc, beyond, over=True)
-    # The faces on the left of what the strand now crosses are cut: what was outside lies beyond it.
-    draft.outer = [draft.mate[p] ^ 2 if p in beyond else p for p in draft.outer]
+    # The faces around the lower crossing now lie beyond what the strand crosses there.
+    at, (s, t) = diagram.face_at, beyond
+    behind = {s: draft.mate[s] ^ 2, t: draft.mate[t] ^ 2, mate[second]: draft.mate[draft.mate[t] ^ 2]}
+    draft.outer = [behind.get(p, p) for p in draft.outer]
+    # Faces with corners at the crossings that went, and nowhere else, have others now.
+    moved = {at[mate[dart]]: third, at[dart ^ 2]: s, at[second ^ 2]: draft.mate[t]}
+    gone = {c >> 2 for c in arc}
+    lost = {at[p] for p in diagram.outer if all(q >> 2 in gone for q in diagram.faces[at[p]])}
+    draft.outer += [moved[face] for face in lost]
     return draft.freeze()
 
 
