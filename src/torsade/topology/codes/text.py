@@ -79,6 +79,12 @@ def _pd(body: str, kind: str) -> Diagram:
             f"{quoted(strange)} in the {kind} is not understood; give crossings such as [1,5,2,4]"
         )
     labels = [[word for word in re.split(r"[\s,]+", row) if word] for row in rows]
+    words = [word for row in labels for word in row]
+    once = [word for word in words if words.count(word) == 1 and _is_integer(word)]
+    if once:
+        raise TorsadeError(
+            f"label {once[0]} occurs once in the {kind}; give it twice, or name the edges of a tangle A0, A1 ..."
+        )
     return from_pd([[int(word) if _is_integer(word) else word for word in row] for row in labels if row])
 
 
@@ -97,6 +103,8 @@ def _braid(body: str, kind: str) -> Diagram:
 
 
 def _conway(body: str, kind: str) -> Diagram:
+    if body.count("[") != body.count("]"):
+        raise TorsadeError(f"the {kind} {quoted(body)} has a bracket that is not closed; close it")
     return from_conway(body)
 
 
