@@ -78,14 +78,15 @@ def _pd(body: str, kind: str) -> Diagram:
         raise TorsadeError(
             f"{quoted(strange)} in the {kind} is not understood; give crossings such as [1,5,2,4]"
         )
-    labels = [[word for word in re.split(r"[\s,]+", row) if word] for row in rows]
+    labels = [[word for word in re.split(r"[\s,]+", row) if word] for row in rows if row]
     words = [word for row in labels for word in row]
     once = [word for word in words if words.count(word) == 1 and _is_integer(word)]
-    if once:
+    if once and all(len(row) == 4 for row in labels):
         raise TorsadeError(
-            f"label {once[0]} occurs once in the {kind}; give it twice, or name the edges of a tangle A0, A1 ..."
+            f"label {once[0]} occurs once in the {kind}; give it twice, or name the edges of a tangle "
+            "A0, A1 ..."
         )
-    return from_pd([[int(word) if _is_integer(word) else word for word in row] for row in labels if row])
+    return from_pd([[int(word) if _is_integer(word) else word for word in row] for row in labels])
 
 
 def _dt(body: str, kind: str) -> Diagram:
