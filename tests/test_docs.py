@@ -50,11 +50,19 @@ def test_the_python_example_runs(
 
 def test_commands_are_found() -> None:
     """The tests below have something to test."""
-    assert {line.split()[1] for line in commands()} == {"run"}
+    assert {line.split()[1] for line in commands()} == {"run", "topology"}
     assert len(commands()) >= 5
 
 
-@pytest.mark.parametrize("line", commands())
+@pytest.mark.parametrize("line", [line for line in commands() if line.split()[1] == "topology"])
+def test_a_topology_shown_is_read(line: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", *shlex.split(line)], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("line", [line for line in commands() if line.split()[1] == "run"])
 def test_a_command_shown_is_a_valid_specification(line: str) -> None:
     _, run, protocol, *arguments = shlex.split(line)
     assert run == "run"
@@ -68,7 +76,9 @@ def test_a_command_shown_is_a_valid_specification(line: str) -> None:
     PROTOCOLS[protocol](**fields)
 
 
-@pytest.mark.parametrize("words", [(), ("demo",), ("run", "prison-escape"), ("run", "tighten")])
+@pytest.mark.parametrize(
+    "words", [(), ("demo",), ("topology",), ("run", "prison-escape"), ("run", "tighten")]
+)
 def test_help_comes(words: tuple[str, ...]) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "torsade", *words, "--help"], capture_output=True, text=True, check=False

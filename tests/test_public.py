@@ -16,7 +16,9 @@ def test_every_name_can_be_had_first(name: str) -> None:
     assert subprocess.run([sys.executable, "-c", script], check=False).returncode == 0
 
 
-@pytest.mark.parametrize("module", [ts.curve, ts.knots, ts.protocols, ts.view], ids=lambda m: m.__name__)
+@pytest.mark.parametrize(
+    "module", [ts.curve, ts.knots, ts.protocols, ts.topology, ts.view], ids=lambda m: m.__name__
+)
 def test_every_name_of_a_module(module: object) -> None:
     assert all(getattr(module, name) is not None for name in module.__all__)  # type: ignore[attr-defined]
 
