@@ -224,7 +224,9 @@ class Range:
 def circulation_range(
     diagram: Diagram, pulled: str | Iterable[str] | None = None, extra: int = 2, limit: int = 2000
 ) -> Range:
-    """Gamma over the drawings with fewest crossings that Reidemeister moves reach.
+    """Gamma over the drawings with fewest crossings that Reidemeister moves reach, ends in place.
+
+    Swinging a free end over the whole tangle to another place outside would give more; it is not done.
 
     Args:
         diagram: where to start.
