@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 import time
 from collections import defaultdict
-from dataclasses import dataclass
 from functools import reduce
 from importlib.resources import files
 from itertools import combinations_with_replacement
@@ -28,12 +27,15 @@ from topology.drawing import (
     with_kink,
 )
 from torsade.errors import TorsadeError
+from torsade.topology.codes import from_pd
+from torsade.topology.diagram import Diagram
 from torsade.topology.identify import identify, identify_pd
 from torsade.topology.invariants import oriented
 from torsade.topology.links import prime_links
 from torsade.topology.lookup import match_knot
 from torsade.topology.names import name_order, split_union, sum_name
 from torsade.topology.table import contents, entries, link_codes, record
+from torsade.topology.tangle import cut
 
 KNOTS = knot_codes()
 ENTRIES = {entry.name: entry for entry in entries()}
@@ -360,13 +362,13 @@ def test_names_are_in_the_order_of_the_tables() -> None:
     assert split_union(["m3_1", "3_1#4_1", "0_1"]) == "0_1 ⊔ 3_1#4_1 ⊔ m3_1"
 
 
-def test_a_diagram_will_do() -> None:
-    @dataclass
-    class Diagram:
-        pd: PD
-        circles: int
-
-    assert identify(Diagram(KNOTS["8_19"], 0)).names == ("8_19",)
+def test_diagrams_and_codes_have_one_name() -> None:
+    from_code = from_pd(KNOTS["8_19"])
+    assert identify(from_code).names == ("8_19",)
+    assert identify(from_code | Diagram.circle()).names == ("0_1 ⊔ 8_19",)
+    assert identify(Diagram.circle()).names == ("0_1",)
+    with pytest.raises(TorsadeError, match="the diagram has ends"):
+        identify(cut(from_code))
 
 
 def test_nothing_is_refused() -> None:
