@@ -21,7 +21,8 @@ FloatArray = NDArray[np.float64]
 H = 2e-4
 """Radius of the reference fibers [m]."""
 
-BENDS = Path(__file__).resolve().parents[2] / "shared" / "data" / "bends"
+SHARED = Path(os.environ.get("TORSADE_SHARED", Path(__file__).resolve().parents[2] / "shared"))
+BENDS = SHARED / "data" / "bends"
 needs_bends = pytest.mark.skipif(not BENDS.is_dir(), reason="the reference bends are not here")
 
 
@@ -129,17 +130,17 @@ ROWS = "strand,x,y,z\n0,0,0,0\n0,1,0,0\n"
         ("0,0,0,0\n0,1,0,0\n", "line 1 is '0,0,0,0', not the header; begin with the line 'strand,x,y,z'"),
         ("# c\nx,y,z\n1,2,3\n", "line 2 is 'x,y,z', not the header"),
         ("strand,x,y,z,w\n0,1,2,3,4\n", "line 1 is 'strand,x,y,z,w', not the header"),
-        ("strand;x;y;z\n0;0;0;0\n", "not the header"),
+        ("strand|x|y|z\n0|0|0|0\n", "not the header"),
         ("q" * 500, "q...', not the header"),
         (ROWS + "0,1,2\n", "line 4 has 3 columns; give the four of 'strand,x,y,z'"),
         (ROWS + "0,1,2,3,4\n", "line 4 has 5 columns"),
-        (ROWS + "0,1,2,\n", "line 4 has z = ''; give a number, in metres"),
+        (ROWS + "0,1,2,\n", "line 4 has z = ''; give a number"),
         (ROWS + "0,1,two,3\n", "line 4 has y = 'two'; give a number"),
         (ROWS + "0,nan,2,3\n", "line 4 has x = 'nan'; give a finite number"),
         (ROWS + "0,1,2,-inf\n", "line 4 has z = '-inf'; give a finite number"),
         (ROWS + "0,1e999,2,3\n", "line 4 has x = '1e999'; give a finite number"),
         (ROWS + "0,1_0,2,3\n", "line 4 has x = '1_0'"),
-        (ROWS + "0,0.1 mm,2,3\n", "line 4 has x = '0.1 mm'; give a number, in metres"),
+        (ROWS + "0,0.1 mm,2,3\n", "line 4 has x = '0.1 mm'; give a number"),
         (ROWS + "-1,1,2,3\n", "line 4 has strand '-1'; give an integer of at least 0"),
         (ROWS + "0.5,1,2,3\n", "line 4 has strand '0.5'"),
         (ROWS + ",1,2,3\n", "line 4 has strand ''"),
@@ -247,7 +248,7 @@ def test_repeated_first_node_of_a_closed_fiber_is_refused() -> None:
 def test_long_edges_are_refused(size: float) -> None:
     message = refusal(line() * size)
     assert "more than the fiber's diameter 0.4 mm" in message
-    assert "resample to shorter edges" in message
+    assert "resample it, or give the unit that x, y, z have" in message
     x = line()
     x[20:] += [1.5 * H, 0, 0]
     assert "edge 19 of strand 0 is 0.5 mm long" in refusal(x)
@@ -325,3 +326,28 @@ def test_a_reference_bend_pushed_into_itself_is_refused() -> None:
         check(moved, H)
     with pytest.raises(TorsadeError, match="the axes are"):
         check(c, 2.5 * H)
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t", " ; "])
+def test_other_separators_and_units(tmp_path: Path, separator: str) -> None:
+    rows = [("strand", "x", "y", "z"), ("0", "0", "0", "0"), ("0", "1.5", "0", "0")]
+    (tmp_path / "a.csv").write_text("\n".join(separator.join(row) for row in rows))
+    np.testing.assert_array_equal(read_csv(tmp_path / "a.csv", "mm").strands[0][1], [1.5e-3, 0, 0])
+    np.testing.assert_array_equal(read_csv(tmp_path / "a.csv").strands[0][1], [1.5, 0, 0])
+
+
+def test_a_header_that_is_none(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_text("strand x y z\n0 0 0 0\n")
+    with pytest.raises(TorsadeError, match=r"not the header; .* with commas, semicolons or tabs"):
+        read_csv(tmp_path / "a.csv")
+
+
+def test_a_built_in_bend_can_be_written(tmp_path: Path) -> None:
+    from torsade.knots import bend
+
+    built = bend("reef", radius="0.2 mm")
+    write_csv(built, tmp_path / "reef.csv")
+    again = read_csv(tmp_path / "reef.csv")
+    for a, b in zip(built.strands, again.strands, strict=True):
+        np.testing.assert_array_equal(a, b)
+    assert built.pulled == "A1B1"

@@ -41,7 +41,7 @@ __all__ = [
 
 __version__ = "0.1.0"
 
-_MODULES = ("curve", "knots", "protocols", "view")
+_MODULES = ("curve", "knots", "material", "protocols", "view")
 _HOMES = {
     "MATERIALS": "torsade.material",
     "Centerline": "torsade.centerline",

@@ -12,13 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade import curve
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted, reason_of
+from torsade.units import quantity
 
 __all__ = ["Centerline", "check", "read_csv", "write_csv"]
 
 FloatArray = NDArray[np.float64]
 
 HEADER = "strand,x,y,z"
+SEPARATORS = ",;\t"
 LARGEST_FILE = 64 * 2**20
 """Largest file read [bytes]: about a million nodes, ten times what a run can use."""
 
@@ -86,37 +88,38 @@ def write_csv(centerline: Centerline, path: str | Path) -> None:
     try:
         Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
     except OSError as error:
-        raise TorsadeError(f"cannot write {str(path)!r} ({_reason(error)}); choose another place") from None
+        raise TorsadeError(f"cannot write {str(path)!r} ({reason_of(error)}); choose another place") from None
 
 
-def read_csv(path: str | Path) -> Centerline:
-    """Read nodes from a CSV file with columns strand, x, y, z [m].
+def read_csv(path: str | Path, unit: str = "m") -> Centerline:
+    """Read nodes from a CSV file with columns strand, x, y, z, in metres or another unit of length.
 
+    Columns are separated by commas, semicolons or tabs, as in the header.
     Lines that begin with # are comments. Strands are numbered 0, 1, 2 ... in the order of the file.
     A strand whose last node equals its first is closed.
 
     Raises:
         TorsadeError: the file is missing, not a text file of this form, or too large; with the line.
     """
+    metre = quantity(f"1 {unit}", "length")
     text = _read_text(Path(path))
+    separator = ""
     strands: list[list[list[float]]] = []
-    header_seen = False
     for number, line in enumerate(io.StringIO(text, newline=None), start=1):
         if not line.strip() or line.lstrip().startswith("#"):
             continue
         where = f"{str(path)!r}, line {number}"
-        if not header_seen:
-            _check_header(line, where)
-            header_seen = True
+        if not separator:
+            separator = _separator(line, where)
             continue
-        strand, node = _read_row(line, where)
+        strand, node = _read_row(line, separator, where)
         if strand == len(strands):
             strands.append([])
         elif strand != len(strands) - 1:
             raise TorsadeError(_misplaced(strand, len(strands), where))
         strands[-1].append(node)
     if not strands:
-        missing = "no nodes" if header_seen else f"no header {HEADER!r}"
+        missing = "no nodes" if separator else f"no header {HEADER!r}"
         raise TorsadeError(f"{str(path)!r} has {missing}; give a line {HEADER!r} and then one line per node")
     for k, nodes in enumerate(strands):
         if len(nodes) < 2:
@@ -124,7 +127,8 @@ def read_csv(path: str | Path) -> Centerline:
     # Three distinct nodes make a loop; fewer that return are an error left to `check`.
     closed = tuple(len(nodes) > 3 and nodes[0] == nodes[-1] for nodes in strands)
     return Centerline(
-        tuple(np.array(nodes[:-1] if c else nodes) for nodes, c in zip(strands, closed, strict=True)), closed
+        tuple(metre * np.array(nodes[:-1] if c else nodes) for nodes, c in zip(strands, closed, strict=True)),
+        closed,
     )
 
 
@@ -146,7 +150,7 @@ def _read_text(path: Path) -> str:
     except (OSError, ValueError) as error:
         if isinstance(error, TorsadeError):
             raise
-        raise TorsadeError(f"cannot read {name} ({_reason(error)}); give a readable CSV file") from None
+        raise TorsadeError(f"cannot read {name} ({reason_of(error)}); give a readable CSV file") from None
     try:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -156,32 +160,41 @@ def _read_text(path: Path) -> str:
     return text
 
 
-def _cells(line: str, where: str) -> list[str]:
+def _cells(line: str, separator: str, where: str) -> list[str]:
+    rows = csv.reader([line.strip(" \r\n")], delimiter=separator, strict=True, skipinitialspace=True)
     try:
-        return [cell.strip() for cell in next(csv.reader([line.strip()], strict=True, skipinitialspace=True))]
+        return [cell.strip() for cell in next(rows)]
     except csv.Error:
         raise TorsadeError(f"{where} cannot be read as CSV; give numbers separated by commas") from None
 
 
-def _check_header(line: str, where: str) -> None:
-    if ",".join(_cells(line, where)).lower() != HEADER:
-        raise TorsadeError(f"{where} is {_quote(line)}, not the header; begin with the line {HEADER!r}")
+def _separator(line: str, where: str) -> str:
+    """What separates the columns of a header."""
+    for separator in SEPARATORS:
+        if ",".join(_cells(line, separator, where)).lower() == HEADER:
+            return separator
+    raise TorsadeError(
+        f"{where} is {quoted(line.strip(), 40)}, not the header; begin with the line {HEADER!r}, with "
+        "commas, semicolons or tabs"
+    )
 
 
-def _read_row(line: str, where: str) -> tuple[int, list[float]]:
-    cells = _cells(line, where)
+def _read_row(line: str, separator: str, where: str) -> tuple[int, list[float]]:
+    cells = _cells(line, separator, where)
     if len(cells) != 4:
         raise TorsadeError(f"{where} has {len(cells)} columns; give the four of {HEADER!r}")
     if not (cells[0].isascii() and cells[0].isdigit() and len(cells[0]) <= 9):
-        raise TorsadeError(f"{where} has strand {_quote(cells[0])}; give an integer of at least 0")
+        raise TorsadeError(f"{where} has strand {quoted(cells[0], 40)}; give an integer of at least 0")
     node = []
     for axis, cell in zip("xyz", cells[1:], strict=True):
         try:
             value = math.nan if "_" in cell else float(cell)
         except ValueError:
-            raise TorsadeError(f"{where} has {axis} = {_quote(cell)}; give a number, in metres") from None
+            raise TorsadeError(
+                f"{where} has {axis} = {quoted(cell, 40)}; give a number such as 1.5e-3"
+            ) from None
         if not math.isfinite(value):
-            raise TorsadeError(f"{where} has {axis} = {_quote(cell)}; give a finite number, in metres")
+            raise TorsadeError(f"{where} has {axis} = {quoted(cell, 40)}; give a finite number")
         node.append(value)
     return int(cells[0]), node
 
@@ -238,7 +251,7 @@ def _check_edges(k: int, x: FloatArray, closed: bool, diameter: float) -> None:
         i = int(np.argmax(l))
         raise TorsadeError(
             f"edge {i} of strand {k} is {_mm(l[i])} long, more than the fiber's diameter {_mm(longest)}, and "
-            "strands could slip through it; resample to shorter edges, or check that x, y, z are metres"
+            "strands could slip through it; resample it, or give the unit that x, y, z have (--length-unit)"
         )
     if l.sum() < SHORTEST * diameter:
         raise TorsadeError(
@@ -274,13 +287,3 @@ def _position(x: FloatArray) -> str:
 
 def _mm(l: float) -> str:
     return f"{1e3 * l:.4g} mm"
-
-
-def _quote(text: str) -> str:
-    text = text.strip()
-    return repr(text if len(text) <= 40 else text[:37] + "...")
-
-
-def _reason(error: Exception) -> str:
-    reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-    return reason.lower()

@@ -10,9 +10,10 @@ True
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
+from types import MappingProxyType, ModuleType
 
 from torsade.errors import TorsadeError
 
@@ -178,7 +179,7 @@ def preset(name: str) -> Preset:
         return MATERIALS[name]
     from difflib import get_close_matches
 
-    near = get_close_matches(str(name).lower(), MATERIALS, n=1, cutoff=0.4)
+    near = get_close_matches(str(name).lower(), MATERIALS, n=1, cutoff=0.6)
     hint = f"did you mean {near[0]!r}? " if near else ""
     raise TorsadeError(f"unknown material {name!r}; {hint}choose one of {', '.join(sorted(MATERIALS))}")
 
@@ -186,3 +187,13 @@ def preset(name: str) -> Preset:
 def material(name: str) -> Material:
     """Return the named material; see `preset`."""
     return preset(name).material
+
+
+class _Named(ModuleType):
+    """Lets `torsade.material("nylon")` be the function: the import system gives that name to this module."""
+
+    def __call__(self, name: str) -> Material:
+        return material(name)
+
+
+sys.modules[__name__].__class__ = _Named

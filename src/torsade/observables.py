@@ -116,12 +116,13 @@ def pull_speed(time: ArrayLike, separation: ArrayLike) -> Floats:
 class Friction(NamedTuple):
     """How a bend resists: c_f, the mean pull speed v [m/s] behind it, and when it slipped [s] or None.
 
-    c_f is None when the ends did not part.
+    c_f is None when the ends did not part. start [s] is the time from which v is the mean.
     """
 
     c_f: float | None
     speed: float
     slipped_at: float | None
+    start: float
 
 
 def friction(
@@ -156,10 +157,10 @@ def friction(
     end = float(t[-1]) if slipped is None else slipped
     start = SETTLED if end > SETTLED * (1 + 1e-9) else float(t[0])
     if not end > start:
-        return Friction(None, math.nan, slipped)
+        return Friction(None, math.nan, slipped, start)
     first, last = np.interp([start, end], t, s)
     v = float((last - first) / (end - start))
-    return Friction(2 * force / (eta * math.pi * radius * v) if v > 0 else None, v, slipped)
+    return Friction(2 * force / (eta * math.pi * radius * v) if v > 0 else None, v, slipped, start)
 
 
 def _first_slip(t: Floats, s: Floats) -> float | None:

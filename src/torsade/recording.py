@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import platform
+import shutil
 import time
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
@@ -14,14 +15,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from torsade import __version__, store
+from torsade import __version__, places, store
 from torsade.arrays import Floats
 from torsade.assembly import Assembly, State
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, counted, quoted
 from torsade.motion.overdamped import Checkpoint
 from torsade.results import Result
 
-__all__ = ["VARIABLES", "Recording"]
+__all__ = ["SAMPLE", "VARIABLES", "Recording"]
 
 FLUSH_EVERY = 0.5
 """Least time between writes to disk [s]: frames that come faster are written together."""
@@ -29,6 +30,8 @@ FLUSH_EVERY = 0.5
 VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "time": (("time",), "s", "time"),
     "separation": (("time",), "m", "pulled end from clamped end, along the pull"),
+    "sample_time": (("sample",), "s", "times between frames, for numbers that do not depend on frames"),
+    "sample_separation": (("sample",), "m", "separation at the times of samples"),
     "pull_speed": (("time",), "m/s", "mean speed of parting since the frame before"),
     "compression": (("time",), "N", "sum over all edges of the contact forces on them"),
     "end_to_end": (("time",), "m", "distance of the two ends"),
@@ -50,26 +53,33 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
 
 SINGLE_PRECISION = ("position", "log_strain")
 
+SAMPLE = "sample_"
+"""Beginning of the names of samples."""
+
+CLOCK = ("clock_time", "clock_counts", "done", "sampled", "wall")
+"""What the restart file holds besides the state."""
+
 Frame = Mapping[str, "float | Floats"]
 
 
 class Recording:
-    """Frames recorded so far, and the exact state behind the last of them.
+    """Frames and samples recorded so far, and the exact state behind the last of them.
 
     Attributes
     ----------
-    done : frames recorded
+    done, sampled : frames and samples recorded
     checkpoint : state and clock at the last of them, None before the first
     wall : computing time so far [s]
     complete : whether there is nothing left to do
-    part : the growing folder on disk, or None
+    part : the growing folder on disk, under a name of its own until it holds a frame, or None
     """
 
     def __init__(
-        self, assembly: Assembly, frames: int, names: tuple[str, ...], attrs: dict[str, Any]
+        self, assembly: Assembly, frames: int, samples: int, names: tuple[str, ...], attrs: dict[str, Any]
     ) -> None:
         sizes = {
             "time": frames,
+            "sample": samples,
             "fiber": len(assembly.closed),
             "node": len(assembly.node_length),
             "space": 3,
@@ -87,13 +97,15 @@ class Recording:
             "closed": ("fiber", assembly.closed.copy()),
         }
         self.attrs = attrs | {"created": _now(), "versions": _versions(), "status": "running"}
-        self.done = 0
+        self.done = self.sampled = 0
         self.checkpoint: Checkpoint | None = None
         self.complete = False
         self.wall = 0.0
+        self._steps = 0
         self.part: Path | None = None
         self._out: Path | None = None
-        self._written = 0
+        self._lock: places.Lock | None = None
+        self._written = (0, 0)
         self._flushed = -np.inf
         self._derive: Callable[[dict[str, Floats]], dict[str, Floats]] = lambda history: {}
 
@@ -102,6 +114,7 @@ class Recording:
         cls,
         assembly: Assembly,
         frames: int,
+        samples: int,
         names: tuple[str, ...],
         attrs: dict[str, Any],
         derive: Callable[[dict[str, Floats]], dict[str, Floats]],
@@ -112,10 +125,10 @@ class Recording:
     ) -> Recording:
         """A new recording, or with resume the one that an interrupted run of the same left at `out`.
 
-        attrs must hold all that tells one run from another; derive gives the histories that follow from
-        those recorded.
+        Close it when the run ends, however it does. attrs must hold all that tells one run from another;
+        derive gives the histories that follow from those recorded.
         """
-        recording = cls(assembly, frames, names, attrs)
+        recording = cls(assembly, frames, samples, names, attrs)
         recording._derive = derive
         if out is None:
             if resume:
@@ -125,52 +138,117 @@ class Recording:
             return recording
         if resume and recording._is_complete(Path(out)):
             return recording
-        recording._out = store.check_target(out, overwrite)
-        part = store.part_of(recording._out)
-        if resume and store.has_restart(part):
-            recording._go_on(part)
-        else:
-            recording.attrs["done"] = 0
-            store.create(recording._dataset(frames), part)
-        recording.part = part
+        recording._out = places.check_target(out, overwrite)
+        recording._lock = places.Lock(recording._out)
+        try:
+            places.check_target(out, overwrite)  # before the lock another run may have come to its end
+            recording._start(places.part_of(recording._out), resume, overwrite)
+        except BaseException:
+            recording.close()
+            raise
         return recording
+
+    def _start(self, part: Path, resume: bool, overwrite: bool) -> None:
+        """Take over the growing folder that is there, or make one under a name of its own."""
+        found = places.attributes(part) or {}
+        done = int(found.get("done", 0))
+        if done and resume:
+            self._go_on(part, found)
+            return
+        if done and not overwrite:
+            raise TorsadeError(
+                f"{str(part)!r} holds {counted(done, 'frame')} of an interrupted run; add --resume "
+                "(resume=True) to go on or --overwrite (overwrite=True) to begin anew"
+            )
+        self.attrs["done"] = self.attrs["sampled"] = 0
+        self.part = places.private(part, "new")
+        store.create(self._dataset(None), self.part)
 
     def _is_complete(self, out: Path) -> bool:
         """Whether the same run stands complete at `out`; its frames are then taken over."""
-        found = store.attributes(out)
-        if found is None or store.part_of(out).exists():
+        found = places.attributes(out)
+        if found is None or found.get("status") != "complete" or places.part_of(out).exists():
             return False
         _same_run(self.attrs, found, out)
         self._out, self.complete = out, True
         return True
 
-    def _go_on(self, part: Path) -> None:
+    def _go_on(self, part: Path, found: Mapping[str, Any]) -> None:
         """Take over the frames and the state of an interrupted run."""
-        found = store.attributes(part) or {}
         _same_run(self.attrs, found, part)
-        saved = store.read_restart(part)
-        self.done = self._written = int(saved["done"])
-        self.wall = float(saved["wall"])
-        state = State(*(saved[name] for name in State._fields))
-        self.checkpoint = Checkpoint(state, saved["clock_time"], saved["clock_counts"])
+        _same_versions(self.attrs, found, part)
         self.attrs["created"] = found["created"]
-        store.set_attributes(part, {"done": self.done, "status": "running"})
+        self.part = part
+        if found["status"] == "complete":  # only its name is missing
+            assert self._out is not None
+            store.complete(part, self._out, {}, {})
+            self.complete = True
+        elif store.has_restart(part):
+            saved = store.read_restart(part, (*State._fields, *CLOCK))
+            self.done, self.sampled = self._written = int(saved["done"]), int(saved["sampled"])
+            self.wall = float(saved["wall"])
+            state = State(*(saved[name] for name in State._fields))
+            self.checkpoint = Checkpoint(state, saved["clock_time"], saved["clock_counts"])
+            self._steps = int(self.checkpoint.counts[0])
+            store.set_attributes(part, self._progress())
+            self._read(part)
+        elif int(found["done"]) == len(self._arrays["time"]):  # only the end is missing
+            self.done, self.sampled = self._written = int(found["done"]), int(found["sampled"])
+            self._steps, self.wall = int(found["steps"]), float(found["wall_s"])
+            self._read(part)
+        else:
+            raise TorsadeError(
+                f"{str(part)!r} holds {counted(found['done'], 'frame')}, but no state to go on from; open it "
+                "for the frames, or give --overwrite (overwrite=True) in place of resume to begin anew"
+            )
+
+    def _read(self, part: Path) -> None:
         before = Result.open(part).dataset
         for name, values in self._arrays.items():
-            values[: self.done] = before[name].values
+            values[: self._count(name)] = before[name].values
 
-    def add(self, frame: Frame, checkpoint: Checkpoint, wall: float) -> None:
-        """Record a frame, with the state behind it and the computing time so far [s]."""
+    def add(self, frame: Frame) -> None:
+        """Record a frame."""
         for name, value in frame.items():
             self._arrays[name][self.done] = value
-        self.checkpoint, self.wall = checkpoint, wall
         self.done += 1
+
+    def sample(self, values: Mapping[str, float]) -> None:
+        """Record a sample of histories that are followed more finely than frames."""
+        for name, value in values.items():
+            self._arrays[SAMPLE + name][self.sampled] = value
+        self.sampled += 1
+
+    def keep(self, checkpoint: Checkpoint, wall: float) -> None:
+        """Hold the state behind what was recorded last, and the computing time so far [s]."""
+        self.checkpoint, self.wall = checkpoint, wall
+        self._steps = int(checkpoint.counts[0])
         if time.monotonic() - self._flushed > FLUSH_EVERY:
             self.flush()
 
     def histories(self) -> dict[str, Floats]:
         """The recorded scalars so far, shape (done,) or (done, n_fibers)."""
-        return {name: a[: self.done] for name, a in self._arrays.items() if name not in SINGLE_PRECISION}
+        return {
+            name: a[: self.done]
+            for name, a in self._arrays.items()
+            if name not in SINGLE_PRECISION and not name.startswith(SAMPLE)
+        }
+
+    def samples(self) -> dict[str, Floats]:
+        """The samples so far, shape (sampled,), without `SAMPLE` in their names."""
+        return {
+            name.removeprefix(SAMPLE): a[: self.sampled]
+            for name, a in self._arrays.items()
+            if name.startswith(SAMPLE)
+        }
+
+    @property
+    def reached(self) -> float:
+        """Time of the last frame [s]."""
+        return float(self._arrays["time"][self.done - 1]) if self.done else 0.0
+
+    def _count(self, name: str) -> int:
+        return self.sampled if name.startswith(SAMPLE) else self.done
 
     def flush(self) -> None:
         """Write to disk what is not there yet."""
@@ -179,72 +257,131 @@ class Recording:
                 self._arrays[name][: self.done] = values
         if self.part is None or self.checkpoint is None:
             return
-        store.append(self.part, self._arrays, self._written, self.done)
+        frames = {name: a for name, a in self._arrays.items() if not name.startswith(SAMPLE)}
+        store.append(self.part, frames, self._written[0], self.done)
+        samples = {name: a for name, a in self._arrays.items() if name.startswith(SAMPLE)}
+        store.append(self.part, samples, self._written[1], self.sampled)
         clock = {"clock_time": self.checkpoint.time, "clock_counts": self.checkpoint.counts}
-        progress = {"done": np.array(self.done), "wall": np.array(self.wall)}
+        progress = {name: np.array(getattr(self, name)) for name in ("done", "sampled", "wall")}
         store.write_restart(self.part, self.checkpoint.state._asdict() | clock | progress)
         store.set_attributes(self.part, self._progress())
-        self._written = self.done
+        self._settle()
+        self._written = self.done, self.sampled
         self._flushed = time.monotonic()
+
+    def _settle(self) -> None:
+        """With a frame on disk, the folder takes the place where others look for it."""
+        assert self._out is not None
+        part = places.part_of(self._out)
+        if self.part is not None and self.part != part:
+            places.replace(self.part, part)
+            self.part = part
 
     def stop(self, status: str) -> None:
         """Save what there is of a run that did not come to its end, and why it did not."""
         self.attrs["status"] = status
-        if self.part is not None and self.done == 0:
-            store.discard(self.part)
-            self.part = None
-        self.flush()
+        try:
+            if self.done:
+                self.flush()
+        finally:
+            self._discard()
 
     def finish(self, numbers: Mapping[str, float]) -> Result:
         """The result of a run that came to its end, with the numbers that belong to it as a whole."""
-        self.attrs.update({"status": "complete"} | dict(numbers))
         self.flush()
+        self.attrs.update({"status": "complete"} | dict(numbers))
         self.attrs.update(self._progress())
         if self.part is not None and self._out is not None:
-            store.complete(self.part, self._out, self.done, self.attrs)
+            store.complete(self.part, self._out, self._sizes(), self.attrs)
         self.complete = True
         return self.result()
+
+    def _discard(self) -> None:
+        """Remove a folder that never held a frame."""
+        if self.part is not None and self._out is not None and self.part != places.part_of(self._out):
+            shutil.rmtree(self.part, ignore_errors=True)
+            self.part = None
+
+    def close(self) -> None:
+        """Let other processes write to the same place."""
+        self._discard()
+        if self._lock is not None:
+            self._lock.release()
 
     def result(self) -> Result:
         """The frames so far as a result."""
         if self.complete and self.done == 0 and self._out is not None:
             return Result.open(self._out)
         self.attrs.update(self._progress())
-        return Result(self._dataset(self.done))
+        return Result(self._dataset(self._sizes()))
+
+    def _sizes(self) -> dict[str, int]:
+        return {"time": self.done, "sample": self.sampled}
 
     def _progress(self) -> dict[str, Any]:
-        steps = 0 if self.checkpoint is None else int(self.checkpoint.counts[0])
-        return {"done": self.done, "steps": steps, "wall_s": self.wall, "status": self.attrs["status"]}
+        return {
+            "done": self.done,
+            "sampled": self.sampled,
+            "steps": self._steps,
+            "wall_s": self.wall,
+            "status": self.attrs["status"],
+        }
 
-    def _dataset(self, frames: int) -> Any:
+    def _dataset(self, sizes: Mapping[str, int] | None) -> Any:
+        """All arrays, cut to these sizes, or whole."""
         import xarray
 
         variables: dict[str, Any] = {}
         for name, values in self._arrays.items():
             dims, unit, meaning = VARIABLES[name]
-            variables[name] = (dims, values[:frames], {"units": unit, "long_name": meaning})
+            cut = values if sizes is None else values[: sizes[dims[0]]]
+            variables[name] = (dims, cut, {"units": unit, "long_name": meaning})
         time_axis = {"time": variables.pop("time")}
         return xarray.Dataset(variables | self._fixed, coords=time_axis, attrs=dict(self.attrs))
 
 
 def _same_run(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) -> None:
     """Refuse to go on with the frames of another run, naming the first thing that differs."""
+    anew = "give --overwrite (overwrite=True) in place of resume to begin anew"
     mine, theirs = json.loads(asked["spec"]), json.loads(found["spec"])
     for name in sorted(mine.keys() | theirs.keys()):
-        if mine.get(name) != theirs.get(name):
+        # A centerline may have been moved; what it says is in the hash of the start.
+        if mine.get(name) != theirs.get(name) and not (name == "centerline" and name in mine.keys() & theirs):
             raise TorsadeError(
                 f"{str(path)!r} was begun with {name} = {theirs.get(name)!r}, not {mine.get(name)!r}; "
-                "resume with the same specification, or run without resume to begin anew"
+                f"resume with the same specification, or {anew}"
+            )
+    mine, theirs = (json.loads(attrs.get("model", "{}")) for attrs in (asked, found))
+    for name in mine:
+        if mine[name] != theirs.get(name):
+            raise TorsadeError(
+                f"{str(path)!r} was begun when {name} meant {_brief(theirs.get(name))}, and now it means "
+                f"{_brief(mine[name])}; {anew}"
             )
     if asked["start"] != found.get("start"):
         raise TorsadeError(
-            f"{str(path)!r} was begun from other node positions; give the same centerline, or run without "
-            "resume to begin anew"
+            f"{str(path)!r} was begun from other node positions; give the same centerline, or {anew}"
         )
 
 
+def _same_versions(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) -> None:
+    """Refuse to mix what different versions compute."""
+    for name in ("torsade", "numba", "numpy"):
+        now, then = asked["versions"][name], found["versions"].get(name)
+        if now != then:
+            raise TorsadeError(
+                f"{str(path)!r} was begun with {name} {then}, and this is {name} {now}, which may round "
+                "otherwise; go on with the earlier version, or give --overwrite (overwrite=True) in place of "
+                "resume to begin anew"
+            )
+
+
+def _brief(value: object) -> str:
+    return quoted(value, 200)
+
+
 def _now() -> str:
-    return datetime.now(UTC).isoformat(timespec="seconds")
+    return datetime.now(UTC).isoformat(timespec="microseconds")
 
 
 def _versions() -> dict[str, str]:

@@ -2,9 +2,13 @@
 
 A result is an `xarray.Dataset` in SI units. Histories have the dimension `time`; `twist` also `fiber`.
 Frames are `position (time, node, space)` [m] and `log_strain (time, node)`, stored in single precision;
-`node_start (fiber_bound)` says where each fiber begins, `closed (fiber)` which are closed. The
-attributes hold `protocol`, `spec` (JSON), `knot`, `radius` [m], `versions`, `created`, `status`, `done`
-(frames), `steps`, `wall_s`, and what the protocol concludes, such as `c_f`.
+Samples, `sample_time (sample)` [s] and `sample_separation (sample)` [m], are finer in time and do not
+depend on frames: what a run concludes comes from them. `node_start (fiber_bound)` says where each fiber
+begins, `closed (fiber)` which are closed.
+
+The attributes hold `protocol`, `spec` and `model` (JSON: what was asked, and the numbers that it meant),
+`knot`, `radius` [m], `versions`, `created`, `status`, `done` (frames), `sampled`, `steps`, `wall_s`, and
+what the protocol concludes, such as `c_f`.
 """
 
 from __future__ import annotations
@@ -13,13 +17,16 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from torsade import store
-from torsade.errors import TorsadeError
+from torsade import places, store
+from torsade.errors import TorsadeError, counted
 
 if TYPE_CHECKING:
     import xarray
 
 __all__ = ["Result", "open_result"]
+
+READ_AT_ONCE = 50_000_000
+"""Largest array that opening a result reads [bytes]."""
 
 
 class Result:
@@ -30,10 +37,13 @@ class Result:
 
     def __init__(self, dataset: xarray.Dataset) -> None:
         self._dataset = dataset
+        self._behind: Path | None = None
 
     @classmethod
     def open(cls, path: str | Path) -> Result:
         """Read a result from NAME.zarr, or what is done of one from NAME.zarr.part.
+
+        Frames of more than `READ_AT_ONCE` bytes stay on disk until they are used.
 
         Raises
         ------
@@ -43,20 +53,34 @@ class Result:
         import xarray
 
         path = Path(path)
-        if store.attributes(path) is None:
-            part = store.part_of(path)
-            if store.attributes(part) is not None:
+        if places.attributes(path) is None:
+            part = places.part_of(path) if path.name else path
+            if places.attributes(part) is not None:
                 raise TorsadeError(
                     f"{str(path)!r} is not complete; open {str(part)!r} for what is done of it"
                 )
             what = "is not a result of torsade" if path.exists() else "does not exist"
             raise TorsadeError(f"{str(path)!r} {what}; give a folder NAME.zarr written by a run")
-        dataset = xarray.open_dataset(path, engine="zarr", chunks=None)
-        return cls(dataset.isel(time=slice(0, int(dataset.attrs["done"]))))
+        stored = xarray.open_dataset(path, engine="zarr", chunks=None)
+        ends = {"time": "done", "sample": "sampled"}
+        recorded = {d: slice(0, int(stored.attrs[name])) for d, name in ends.items() if d in stored.dims}
+        result = cls(stored.isel(recorded))
+        for variable in result._dataset.variables.values():
+            if variable.nbytes <= READ_AT_ONCE:
+                variable.load()
+            else:
+                result._behind = path
+        return result
 
     @property
     def dataset(self) -> xarray.Dataset:
         """The labelled arrays, in SI units."""
+        if self._behind is not None:
+            now = places.attributes(self._behind) or {}
+            if now.get("created") != self._dataset.attrs.get("created"):
+                raise TorsadeError(
+                    f"{str(self._behind)!r} was moved or replaced since it was opened; open it again"
+                )
         return self._dataset
 
     @property
@@ -105,11 +129,21 @@ class Result:
         TorsadeError
             When the folder cannot be written, or exists and is not a result that may be overwritten.
         """
-        out = store.check_target(path, overwrite)
-        part = store.part_of(out)
-        # Loaded first: the result may be the one that is replaced.
-        store.create(self._dataset.load(), part)
-        store.complete(part, out, self.frames, {})
+        out = places.check_target(path, overwrite)
+        lock = places.Lock(out)
+        try:
+            part = places.part_of(out)
+            done = (places.attributes(part) or {}).get("done", 0)
+            if done:
+                raise TorsadeError(
+                    f"{str(part)!r} holds {counted(done, 'frame')} of an interrupted run; finish it or give "
+                    "another name"
+                )
+            new = places.private(out, "new")
+            store.create(self.dataset, new)
+            places.replace(new, out)
+        finally:
+            lock.release()
         return out
 
     def _number(self, name: str) -> float | None:

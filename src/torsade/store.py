@@ -7,13 +7,12 @@ is written last, so whatever stops the program, the frames it counts can be read
 
 from __future__ import annotations
 
-import json
 import os
 import shutil
-import tempfile
 import warnings
 import zipfile
-from collections.abc import Iterator, Mapping
+import zlib
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -22,19 +21,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade.errors import TorsadeError
+from torsade.places import replace, writing
 
 if TYPE_CHECKING:
     import xarray
 
 __all__ = [
     "append",
-    "attributes",
-    "check_target",
     "complete",
     "create",
-    "discard",
     "has_restart",
-    "part_of",
     "read_restart",
     "set_attributes",
     "write_restart",
@@ -47,70 +43,34 @@ CHUNK_BYTES = 2**16
 """Size of a chunk [bytes], rounded up to whole frames."""
 
 
-def part_of(out: Path) -> Path:
-    """Where a result is while it grows."""
-    return out.with_name(out.name + ".part")
-
-
-def attributes(path: Path) -> dict[str, Any] | None:
-    """Attributes of a result on disk, complete or not; None when the path is nothing of ours."""
-    try:
-        found = json.loads((path / "zarr.json").read_text(encoding="utf-8"))["attributes"]
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
-    ours = isinstance(found, dict) and "protocol" in found and "versions" in found
-    return found if ours else None
-
-
-def check_target(out: str | Path, overwrite: bool = False) -> Path:
-    """The path to write a result to, once it is certain that this can be done and harms nothing.
-
-    Raises
-    ------
-    TorsadeError
-        When the name does not end in .zarr, the folder is missing or cannot be written, or something
-        is there already: a result that may not be replaced, or anything else.
-    """
-    out = Path(out)
-    if out.suffix != ".zarr" or out.name == ".zarr":
-        raise TorsadeError(f"the output is called {str(out)!r}; give a name that ends in .zarr")
-    for path in (out, part_of(out)):
-        if os.path.lexists(path) and attributes(path) is None:
-            raise TorsadeError(f"{str(path)!r} exists and is not a result of torsade; give another name")
-    if out.exists() and not overwrite:
-        raise TorsadeError(
-            f"{str(out)!r} exists already; give another name, or overwrite=True (--overwrite) to replace it"
-        )
-    if not out.parent.is_dir():
-        raise TorsadeError(f"there is no folder {str(out.parent)!r} to write to; create it or give another")
-    with _writing(out), tempfile.TemporaryFile(dir=out.parent):
-        pass
-    return out
-
-
 def create(dataset: xarray.Dataset, path: Path) -> None:
-    """Write a dataset as a new folder in zarr's third format, in place of what was there."""
+    """Write a dataset as a new folder in zarr's third format; nothing is left when that fails."""
     from zarr.codecs import BloscCodec
 
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in dataset.variables.items():
-        if variable.dims[:1] == ("time",):
+        if variable.dims[:1] in (("time",), ("sample",)):
             frame = max(1, variable.dtype.itemsize * int(np.prod(variable.shape[1:])))
             rows = max(1, min(variable.shape[0], -(-CHUNK_BYTES // frame)))
             encoding[str(name)] = {"chunks": (rows, *variable.shape[1:])}
             if variable.dtype == np.float32:
                 codec = BloscCodec(cname="zstd", clevel=5, shuffle="bitshuffle")
                 encoding[str(name)]["compressors"] = [codec]
-    with _writing(path), _quiet_zarr():
-        shutil.rmtree(path, ignore_errors=True)
-        dataset.drop_encoding().to_zarr(path, mode="w-", zarr_format=3, consolidated=True, encoding=encoding)
+    with writing(path), _quiet_zarr():
+        try:
+            dataset.drop_encoding().to_zarr(
+                path, mode="w-", zarr_format=3, consolidated=True, encoding=encoding
+            )
+        except BaseException:
+            shutil.rmtree(path, ignore_errors=True)
+            raise
 
 
 def append(path: Path, arrays: Arrays, first: int, last: int) -> None:
     """Write frames first to last (not included) of arrays (n_frames, ...) that hold all frames so far."""
     import zarr
 
-    with _writing(path), _quiet_zarr():
+    with writing(path), _quiet_zarr():
         group = zarr.open_group(path, mode="r+")
         for name, values in arrays.items():
             array = group[name]
@@ -125,16 +85,18 @@ def set_attributes(path: Path, changed: Mapping[str, Any]) -> None:
     """Change attributes of a result on disk."""
     import zarr
 
-    with _writing(path), _quiet_zarr():
+    with writing(path), _quiet_zarr():
         zarr.open_group(path, mode="r+").attrs.update(dict(changed))
 
 
 def write_restart(part: Path, arrays: Arrays) -> None:
     """Replace the restart file at once."""
-    with _writing(part):
+    with writing(part):
         new = part / (RESTART + ".new")
         with new.open("wb") as file:
             np.savez(file, **arrays)  # type: ignore[arg-type]
+            file.flush()
+            os.fsync(file.fileno())
         new.replace(part / RESTART)
 
 
@@ -143,53 +105,36 @@ def has_restart(part: Path) -> bool:
     return (part / RESTART).is_file()
 
 
-def discard(part: Path) -> None:
-    """Remove a growing result that holds no frame."""
-    shutil.rmtree(part, ignore_errors=True)
-
-
-def read_restart(part: Path) -> dict[str, NDArray[Any]]:
-    """The arrays of the restart file."""
+def read_restart(part: Path, wanted: Iterable[str]) -> dict[str, NDArray[Any]]:
+    """The arrays of the restart file, those wanted among them."""
     try:
-        with np.load(part / RESTART, allow_pickle=False) as file:
-            return {name: file[name] for name in file.files}
-    except (OSError, ValueError, zipfile.BadZipFile):
+        with (part / RESTART).open("rb") as raw, np.load(raw, allow_pickle=False) as file:
+            return {name: file[name] for name in wanted}
+    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, zlib.error):
         raise TorsadeError(
-            f"{str(part)!r} has no state to go on from; run without resume to begin anew"
+            f"the state to go on from in {str(part / RESTART)!r} is damaged; open {str(part)!r} for the "
+            "frames that there are, or give --overwrite (overwrite=True) in place of resume to begin anew"
         ) from None
 
 
-def complete(part: Path, out: Path, frames: int, changed: Mapping[str, Any]) -> None:
-    """Cut a grown result to its frames, give it its last attributes and its name."""
+def complete(part: Path, out: Path, sizes: Mapping[str, int], changed: Mapping[str, Any]) -> None:
+    """Cut a grown result to the sizes of its dimensions, give it its last attributes and its name.
+
+    What is needed to go on goes last: whatever stops this, it can be done once more.
+    """
     import zarr
 
-    with _writing(part), _quiet_zarr():
+    with writing(part), _quiet_zarr():
         group = zarr.open_group(part, mode="r+")
         for _, array in group.arrays():
             names = array.metadata.dimension_names  # type: ignore[union-attr]
-            if names and names[0] == "time" and array.shape[0] != frames:
-                array.resize((frames, *array.shape[1:]))
+            size = sizes.get(str(names[0])) if names else None
+            if size not in (None, array.shape[0]):
+                array.resize((size, *array.shape[1:]))
         group.attrs.update(dict(changed))
-        (part / RESTART).unlink(missing_ok=True)
         zarr.consolidate_metadata(str(part))
-        replaced = out.with_name(out.name + ".replaced")
-        if out.exists():
-            shutil.rmtree(replaced, ignore_errors=True)
-            out.rename(replaced)
-        part.rename(out)
-        shutil.rmtree(replaced, ignore_errors=True)
-
-
-@contextmanager
-def _writing(path: Path) -> Iterator[None]:
-    """Turn what the system says about a path that cannot be written into one sentence."""
-    try:
-        yield
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise TorsadeError(
-            f"cannot write {str(path)!r} ({reason}); give a place with room that can be written"
-        ) from None
+        replace(part, out)
+        (out / RESTART).unlink(missing_ok=True)
 
 
 @contextmanager

@@ -23,7 +23,7 @@ from typing import Annotated, NamedTuple
 
 from pydantic import BeforeValidator
 
-from torsade.errors import TorsadeError
+from torsade.errors import QuantityError, TorsadeError, quoted
 
 __all__ = [
     "DIMENSIONS",
@@ -40,6 +40,7 @@ __all__ = [
     "Torque",
     "Velocity",
     "Viscosity",
+    "metres",
     "quantity",
 ]
 
@@ -166,10 +167,20 @@ def quantity(value: str | float, dimension: str) -> float:
     elif isinstance(value, Real) and not isinstance(value, bool):
         result = _to_float(value)
     else:
-        raise TorsadeError(f"{_quote(value)} is not a number; {_advice(wanted)}")
+        raise QuantityError(f"{quoted(value)} is not a number; {_advice(wanted)}")
     if not math.isfinite(result):
-        raise TorsadeError(f"{_quote(value)} is not a finite number; {_advice(wanted)}")
+        raise QuantityError(f"{quoted(value)} is not a finite number; {_advice(wanted)}")
     return result
+
+
+def metres(name: str, value: float | str) -> float:
+    """A length [m] that may carry a unit; what is wrong with it is said with its name."""
+    if not isinstance(value, str):
+        return value
+    try:
+        return quantity(value, "length")
+    except QuantityError as error:
+        raise QuantityError(f"{name} {error}") from None
 
 
 def _to_float(number: Real | Fraction) -> float:
@@ -186,7 +197,7 @@ def _from_text(text: str, wanted: Dimension) -> float:
     if number is None:
         if plain.lower().lstrip("+-") in ("nan", "inf", "infinity"):
             return math.nan
-        raise TorsadeError(f"{_quote(text)} does not begin with a number; {_advice(wanted)}")
+        raise QuantityError(f"{quoted(text)} does not begin with a number; {_advice(wanted)}")
     rounded = float(number[0])
     if math.isinf(rounded):
         return rounded
@@ -198,10 +209,10 @@ def _from_text(text: str, wanted: Dimension) -> float:
     try:
         measure = _read_unit(unit)
     except ValueError as reason:
-        raise TorsadeError(f"{_quote(text)} has {reason}; {_advice(wanted)}") from None
+        raise QuantityError(f"{quoted(text)} has {reason}; {_advice(wanted)}") from None
     if measure.exponents != wanted.exponents:
         given = next((d.name for d in DIMENSIONS.values() if d.exponents == measure.exponents), None)
-        raise TorsadeError(f"{_quote(text)} is {_a(given)}, not {_a(wanted.name)}; {_advice(wanted)}")
+        raise QuantityError(f"{quoted(text)} is {_a(given)}, not {_a(wanted.name)}; {_advice(wanted)}")
     return _to_float(exact * measure.factor)
 
 
@@ -275,11 +286,6 @@ def _advice(wanted: Dimension) -> str:
     if not wanted.unit:
         return f'give a pure number, such as "{wanted.example}"'
     return f'give {_a(wanted.name)} such as "{wanted.example}", or a number in {wanted.unit}'
-
-
-def _quote(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else text[:56] + "..." + text[-1]
 
 
 def _reads(dimension: str) -> BeforeValidator:

@@ -70,6 +70,11 @@ def test_a_table_names_the_files(tmp_path: Path) -> None:
     done = shell(*SHORT, "--out", "reef.zarr", "--plot", "reef.svg", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "topological friction c_f" in done.stdout
+    assert "no, not within 0.005 s" in done.stdout
+    assert "mm/s, from 0 s to 0.005 s" in done.stdout
+    assert "nylon, radius 0.2 mm" in done.stdout
+    assert "A1 clamped, B1 pulled" in done.stdout
+    assert "mm at 0.005 s" in done.stdout
     assert "reef.zarr" in done.stdout
     assert (tmp_path / "reef.svg").stat().st_size > 1000
     again = shell(*SHORT, "--out", "reef.zarr", cwd=tmp_path)
@@ -82,7 +87,7 @@ def test_a_specification_file_with_and_without_its_protocol(tmp_path: Path) -> N
     text = 'protocol = "prison-escape"\nknot = "reef"\nduration = "5 ms"\nframes = 4\nforce = "12 N"\n'
     (tmp_path / "reef.toml").write_text(text)
     one = shell("run", "prison-escape", "--spec", "reef.toml", "--frames", "2", "--json", cwd=tmp_path)
-    two = shell("run", "--spec", "reef.toml", "--frames", "2", "--json", cwd=tmp_path)
+    two = shell("run", "--frames", "2", "--spec", "reef.toml", "--json", cwd=tmp_path)
     assert one.returncode == two.returncode == 0, one.stderr + two.stderr
     first, second = json.loads(one.stdout), json.loads(two.stdout)
     assert len(first["times_s"]) == 3
@@ -112,6 +117,7 @@ def test_ctrl_c_says_what_is_saved_and_how_to_go_on(tmp_path: Path) -> None:
     assert process.returncode == 130
     assert "frames are saved in 'reef.zarr.part'" in error
     assert "--resume" in error
+    assert "stopping ..." in error
     assert "Traceback" not in error
     stored = ts.open(part)
     assert stored.frames > 5
@@ -131,3 +137,82 @@ def test_the_demo(tmp_path: Path) -> None:
         "reef.zarr",
     ]
     assert ts.open(tmp_path / "demo" / "reef.zarr").slipped_at is None
+
+
+DRAWING = """
+import sys
+from torsade.view import plots, scene
+def stop(*arguments, **options):
+    raise KeyboardInterrupt
+{where} = stop
+from torsade.cli import main
+main(sys.argv[1:])
+"""
+
+
+def test_ctrl_c_while_drawing_says_that_the_result_is_complete(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    script = DRAWING.format(where="plots.plot_separation")
+    done = subprocess.run(
+        [sys.executable, "-c", script, *SHORT, "--out", "reef.zarr", "--plot", "reef.png"],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+    )
+    assert done.returncode == 130
+    assert done.stderr == (
+        "torsade: interrupted while drawing 'reef.png'; the result is complete in 'reef.zarr'.\n"
+    )
+    assert "topological friction" in done.stdout
+    assert ts.open(tmp_path / "reef.zarr").complete
+
+
+def test_a_picture_that_fails_keeps_neither_numbers_nor_plot_away(tmp_path: Path) -> None:
+    pytest.importorskip("pyvista")
+    failing = (
+        "from torsade.errors import TorsadeError\ndef stop(*_, **__):\n    raise TorsadeError('no lamp')\n"
+    )
+    script = failing + DRAWING.replace("def stop", "def unused").format(where="scene.render_result")
+    done = subprocess.run(
+        [sys.executable, "-c", script, *SHORT, "--json", "--picture", "reef.png", "--plot", "reef.svg"],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (2, "torsade: no lamp.\n")
+    assert json.loads(done.stdout)["steps"] > 0
+    assert (tmp_path / "reef.svg").exists()
+
+
+def test_a_very_early_ctrl_c_is_clean(tmp_path: Path) -> None:
+    script = (
+        "import sys\nclass Stop:\n    def find_spec(self, name, *_):\n        if name == 'cyclopts':\n"
+        "            raise KeyboardInterrupt\nsys.meta_path.insert(0, Stop())\n"
+        "from torsade.cli import main\nmain(['run'])"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr.count("\n")) == (130, 1)
+    assert done.stderr.startswith("torsade: interrupted before the first frame")
+
+
+def test_a_centerline_in_millimetres_and_semicolons(tmp_path: Path) -> None:
+    from torsade.knots import overhand
+
+    (x,) = overhand("0.2 mm").strands
+    rows = [f"0;{1e3 * a!r};{1e3 * b!r};{1e3 * c!r}" for a, b, c in x.tolist()]
+    (tmp_path / "mine.csv").write_text("strand;x;y;z\n" + "\n".join(rows))
+    short = ("--duration", "2 ms", "--frames", "1")
+    done = shell(
+        "run", "tighten", "--centerline", "mine.csv", "--length-unit", "mm", *short, "--json", cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["length_m"][0] == pytest.approx(0.02, rel=0.01)
+    assert "--length-unit" in shell("run", "tighten", "--centerline", "mine.csv", cwd=tmp_path).stderr
+
+
+def test_the_path_of_a_result_is_printed_in_one_line(tmp_path: Path) -> None:
+    name = "a" * 100 + ".zarr"
+    done = shell(*SHORT, "--out", name, cwd=tmp_path)
+    assert f"result{' ' * 20}{name}\n" in done.stdout

@@ -48,7 +48,17 @@ BEND = ("run", "prison-escape")
         ((*BEND, "--knot", "reef", "--preset", "publishd"), "did you mean 'published'?"),
         ((*BEND, "reef"), "did you mean --knot reef?"),
         ((*BEND, "--knot", "reef", "--rho", "1"), "has no inertia"),
-        ((*BEND, "--knot", "reff"), "the nearest name is 'reef'"),
+        ((*BEND, "--knot", "reff"), "did you mean 'reef'?"),
+        (
+            ("run", "--knot", "reef"),
+            "--knot comes without a protocol; begin with torsade run",
+        ),
+        (("run", "--knot=reef"), "--knot comes without a protocol; begin"),
+        (("run", "--json", "--spec"), "--spec has no value"),
+        (("run", "--json", "--spec", "none.toml"), "there is no file 'none.toml'"),
+        ((*BEND, "--knot", "reef", "--diameter", "1 mm"), "give --radius, half of it"),
+        ((*BEND, "--knot", "reef", "--length", "1 m"), "a built-in knot takes --lead"),
+        ((*BEND, "--knot", "reef", "--frames", "9" * 5000), "more digits"),
         ((*BEND, "--knot", "reef", "--materail", "nylon"), "did you mean --material?"),
         ((*BEND, "--knot", "reef", "--force"), "--force has no value"),
         (
@@ -57,12 +67,18 @@ BEND = ("run", "prison-escape")
         ),
         ((*BEND, "--knot", "reef", "--out", "reef"), "give a name that ends in .zarr"),
         ((*BEND, "--knot", "reef", "--out", "no/such/reef.zarr"), "there is no folder"),
+        ((*BEND, "--knot", "reef", "--out", ""), "the output is called ''"),
+        ((*BEND, "--knot", "reef", "--out", "."), "give a name that ends in .zarr"),
+        ((*BEND, "--knot", "reef", "--out", "/", "--resume"), "give a name that ends in .zarr"),
+        (("demo", "--out", ""), "--out is empty"),
         ((*BEND, "--knot", "reef", "--resume"), "(--out NAME.zarr)"),
         ((*BEND, "--centerline", "none.csv"), "there is no file 'none.csv'"),
         ((*BEND, "--spec", "none.toml"), "there is no file 'none.toml'"),
         (BEND, "nothing to pull is given"),
         (("run", "prison"), "did you mean 'prison-escape'?"),
-        (("run", "tighten", "--knot", "trefoil"), "give a centerline, a CSV file of one strand"),
+        (("run", "tighten", "--knot", "trefoil"), "did you mean 'overhand'?"),
+        (("run", "tighten", "--knot", "reef"), "give torsade run prison-escape --knot reef"),
+        ((*BEND, "--knot", "overhand"), "give torsade run tighten --knot overhand"),
         (("run", "reef.toml"), "give a file with --spec reef.toml"),
         (("tighten",), "give torsade run tighten"),
         (("dmeo",), "did you mean 'demo'?"),
@@ -88,6 +104,21 @@ def test_pictures_are_refused_before_the_run(tmp_path: Path, option: str, file: 
     pytest.importorskip("pyvista" if option == "--picture" else "matplotlib")
     assert says in refusal(*BEND, "--knot", "reef", option, file, cwd=tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_picture_and_a_plot_need_two_files(tmp_path: Path) -> None:
+    pytest.importorskip("pyvista")
+    same = ("--picture", "reef.png", "--plot", "./reef.png")
+    assert "give each a file of its own" in refusal(*BEND, "--knot", "reef", *same, cwd=tmp_path)
+
+
+def test_the_demo_replaces_nothing_of_others(tmp_path: Path) -> None:
+    (tmp_path / "reef.png").write_text("mine")
+    assert "'reef.png' exists and may not be the demo's" in refusal("demo", "--out", ".", cwd=tmp_path)
+    done = shell(*BEND, "--knot", "reef", "--duration", "1 ms", "--out", "reef.zarr", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "'reef.zarr' is the result of another run" in refusal("demo", "--out", ".", cwd=tmp_path)
+    assert (tmp_path / "reef.png").read_text() == "mine"
 
 
 def hooked() -> list[np.ndarray]:

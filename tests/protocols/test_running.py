@@ -57,6 +57,30 @@ def test_the_report_has_the_promised_keys(short: ts.Result) -> None:
     assert report["pull_speed_m_per_s"] == pytest.approx(speed)
 
 
+def test_runs_shorter_than_settling_say_from_when_they_are_measured(short: ts.Result) -> None:
+    report = PrisonEscape.report(short)
+    assert report["c_f"] > 0
+    assert report["c_f_from_s"] == 0.0
+    assert report["pulled"] == "A1B1"
+
+
+@pytest.mark.slow
+def test_friction_and_slipping_do_not_depend_on_frames() -> None:
+    found = {n: PrisonEscape(knot="thief", frames=n).run() for n in (5, 100, 1000)}
+    for result in found.values():
+        assert result.c_f == pytest.approx(found[100].c_f, rel=0.005)
+        assert result.slipped_at == pytest.approx(found[100].slipped_at, abs=0.01)
+    assert found[5].c_f == found[100].c_f
+    assert found[100].dataset.attrs["c_f_from_s"] == 0.3
+
+
+def test_samples_are_even_whatever_the_frames(short: ts.Result) -> None:
+    np.testing.assert_allclose(short.dataset["sample_time"], np.linspace(0, 0.01, 101), rtol=1e-9)
+    both = np.isclose(short.dataset["sample_time"].values[:, None], short.dataset["time"].values)
+    i, k = np.nonzero(both)
+    np.testing.assert_array_equal(short.dataset["sample_separation"][i], short.dataset["separation"][k])
+
+
 def test_the_same_run_twice_is_the_same_to_the_bit(short: ts.Result) -> None:
     assert SHORT.run().dataset.equals(short.dataset)
 
@@ -68,7 +92,7 @@ def test_ctrl_c_keeps_the_frames_and_resuming_changes_no_bit(tmp_path: Path, sho
         if share > 0.4:
             raise KeyboardInterrupt
 
-    with pytest.raises(Interrupted, match=r"interrupted at t = 0.005 s; 4 frames are saved in"):
+    with pytest.raises(Interrupted, match=r"interrupted at t = 0.00375 s; 4 frames are saved in"):
         SHORT.run(stop, out)
     part = ts.open(tmp_path / "reef.zarr.part")
     assert part.frames == 4
@@ -110,7 +134,9 @@ def test_a_killed_run_can_be_read_and_resumed_to_the_bit(tmp_path: Path, short: 
     assert done.returncode == -signal.SIGKILL
     part = ts.open(tmp_path / "reef.zarr.part")
     assert part.frames == 5
-    assert part.dataset.equals(short.dataset.isel(time=slice(0, 5)))
+    samples = part.dataset.sizes["sample"]
+    assert 60 <= samples <= 62
+    assert part.dataset.equals(short.dataset.isel(time=slice(0, 5), sample=slice(0, samples)))
     plain = xarray.open_zarr(tmp_path / "reef.zarr.part", chunks=None)
     assert plain.attrs["done"] == 5
     np.testing.assert_array_equal(plain["separation"][:5], short.dataset["separation"][:5])
@@ -130,7 +156,11 @@ def test_resuming_something_else_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ts.TorsadeError, match=r"was begun with force = 15.0, not 14.0; resume with the same"):
         other.run(out=out, resume=True)
     assert ts.open(tmp_path / "reef.zarr.part").frames == 2
-    assert other.run(out=out).complete  # without resume it begins anew
+    with pytest.raises(ts.TorsadeError, match=r"holds 2 frames of an interrupted run; add --resume"):
+        other.run(out=out)
+    assert ts.open(tmp_path / "reef.zarr.part").frames == 2
+    assert other.run(out=out, overwrite=True).complete
+    assert [p.name for p in tmp_path.iterdir()] == ["reef.zarr"]
 
 
 def test_a_complete_run_is_not_run_again(tmp_path: Path) -> None:
@@ -153,6 +183,35 @@ def test_a_one_strand_knot(bends: Path) -> None:
     assert all(len(report[k]) == 3 for k in keys.split()[:6])
     strain = result.dataset["log_strain"].max("node")
     np.testing.assert_allclose(report["max_log_strain"], strain, rtol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_slack_agrees_with_all_pairs(seed: int) -> None:
+    """The distance of the first of all pairs to touch, by brute force."""
+    rng = np.random.default_rng(seed)
+    strands = [1e-4 * np.cumsum(rng.normal(size=(60, 3)), axis=0) for _ in range(2)]
+    strands[1] -= np.array([rng.uniform(2e-3, 2e-2), 0.0, 0.0])
+    assembly = assemble(strands)
+    x = np.concatenate(strands)
+    a, b = (0.5 * (s[1:] + s[:-1]) for s in strands)
+    between = a[:, None] - b[None]
+    touch, along = 4e-4 * (1 - 1e-3), between[..., 0]
+    across = np.sum(between**2, axis=2) - along**2
+    meets = (across < touch**2) & (along > 0)
+    gap = (along[meets] - np.sqrt(touch**2 - across[meets])).min() if meets.any() else None
+    assert take_up_slack(assembly, x, 1, np.array([1.0, 0, 0]), 4e-4) == (gap is not None)
+    moved = x[60:, 0] - strands[1][:, 0]
+    np.testing.assert_allclose(moved, 0.0 if gap is None else gap, rtol=1e-12)
+
+
+def test_slack_of_long_strands_takes_little_memory() -> None:
+    """All pairs of these midpoints would take 20 GB."""
+    x = np.outer(np.arange(30_000) * 1e-4, [1.0, 0.0, 0.0])
+    strands = [x, x - [3.2, 0.0, 0.0]]
+    assembly = assemble(strands)
+    now = np.concatenate(strands)
+    assert take_up_slack(assembly, now, 1, np.array([1.0, 0, 0]), 4e-4)
+    assert now[-1, 0] == pytest.approx(-3.5e-4, abs=1e-4)
 
 
 def test_slack_is_taken_up_to_the_first_touch() -> None:

@@ -37,7 +37,8 @@ def test_the_published_preset_and_what_overrides_it() -> None:
     spec = PrisonEscape(knot="reef", preset="published")
     assert spec.laws == PUBLISHED
     assert spec.stepping.fixed_step == 1e-4
-    assert spec.node_spacing is None
+    assert spec.node_spacing == pytest.approx(1.38e-4)
+    assert PrisonEscape(centerline="a.csv", preset="published").node_spacing is None
     spec = PrisonEscape(knot="reef", preset="published", drag="continuum", eta_f_ratio=3.3, tolerance=1e-4)
     assert (spec.laws.drag, spec.laws.eta_f_ratio, spec.laws.area) == ("continuum", 3.3, "projected")
     assert (spec.stepping.fixed_step, spec.stepping.tolerance) == (0.0, 1e-4)
@@ -62,6 +63,25 @@ def test_a_specification_is_frozen_and_survives_json() -> None:
             "did you mean 'published'? choose one of standard, published",
         ),
         ({"knot": "reef", "frames": 0}, "frames is 0; give a number of at least 1"),
+        ({"knot": "reef", "frames": True}, "frames is True; give a whole number"),
+        (
+            {"knot": "reef", "frames": 10**400},
+            "frames is a whole number of 401 digits; give a number of at",
+        ),
+        (
+            {"knot": "reef", "frames": 10**5000},
+            "frames is a whole number of 5001 digits; give a number",
+        ),
+        ({"knot": "reef", "exclusion_edges": 10**9}, "give a number of at most 1000000"),
+        ({"knot": "reef", "force": True}, "force True is not a number"),
+        ({"knot": "reef", "force": 10**400}, "force a whole number of 401 digits is not a finite number"),
+        (
+            {"knot": "square knot"},
+            "no bend is called 'square knot'; did you mean 'reef'? choose",
+        ),
+        ({"knot": "bowline"}, "'bowline'; choose one of reef, thief, granny, grief, or pull a centerline of"),
+        ({"knot": "reef", "diameter": "1 mm"}, "give 'radius', half of it"),
+        ({"knot": "reef", "length": "1 m"}, "a built-in knot takes 'lead'"),
         ({"knot": "reef", "frames": 1.5}, "frames is 1.5; give a whole number"),
         ({"knot": "reef", "material": "nilon"}, "did you mean 'nylon'?"),
         ({"knot": "reef", "nu": 0.5}, "nu is 0.5; give a number below 0.5"),
@@ -72,6 +92,11 @@ def test_a_specification_is_frozen_and_survives_json() -> None:
         ({"knot": "reef", "centerline": "a.csv"}, "are both given; give one of them"),
         ({"knot": "reef", "tolerance": 1e-3, "fixed_step": 1e-4}, "are both given"),
         ({}, "nothing to pull is given"),
+        (
+            {"knot": "reef", "material": "silicone"},
+            "a force of 15 N would stretch this fiber by F/EA = 2.39, and the model holds for 0.5 at most; "
+            "give a force of at most 3.14 N, or another material, E or radius",
+        ),
     ],
 )
 def test_bad_fields_are_refused_in_one_sentence(fields: dict[str, Any], says: str) -> None:
@@ -82,10 +107,14 @@ def test_bad_fields_are_refused_in_one_sentence(fields: dict[str, Any], says: st
 
 
 def test_tighten_says_what_it_does_not_have() -> None:
-    with pytest.raises(ts.TorsadeError, match="no built-in knots yet; give a centerline"):
-        Tighten(knot="trefoil")  # type: ignore[call-arg]
-    with pytest.raises(ts.TorsadeError, match="centerline is missing; give a CSV file"):
-        Tighten()  # type: ignore[call-arg]
+    with pytest.raises(ts.TorsadeError, match="is called 'trefoil'; did you mean 'overhand'"):
+        Tighten(knot="trefoil")
+    with pytest.raises(ts.TorsadeError, match='nothing to pull is given; give a knot, "overhand", or'):
+        Tighten()
+    with pytest.raises(ts.TorsadeError, match="length_unit 'mm' belongs to a centerline"):
+        Tighten(knot="overhand", length_unit="mm")
+    with pytest.raises(ts.TorsadeError, match="length_unit 'kg' is no unit of length"):
+        Tighten(centerline="a.csv", length_unit="kg")
 
 
 # --- what a specification makes
@@ -110,6 +139,24 @@ def test_strands_are_resampled_unless_published(bends: Path) -> None:
 def test_the_wrong_number_of_strands(bends: Path, protocol: type[Any], file: str, says: str) -> None:
     with pytest.raises(ts.TorsadeError, match=says):
         protocol(centerline=str(bends / file)).run()
+
+
+@pytest.mark.parametrize(
+    ("fields", "says"),
+    [
+        ({"lead": "2 m", "spacing": "0.02 mm"}, "more than the 100000 that a run can move"),
+        ({"frames": 1_000_000}, "1000001 frames of 314 nodes take 5.0 GB; give at most 796177 frames"),
+    ],
+)
+def test_runs_that_memory_cannot_hold(fields: dict[str, Any], says: str) -> None:
+    with pytest.raises(ts.TorsadeError, match=says):
+        PrisonEscape(knot="reef", **fields).run()
+
+
+def test_a_spacing_far_below_the_radius_is_refused_before_memory_is_taken(tmp_path: Path) -> None:
+    ts.write_csv(PrisonEscape(knot="reef").configuration(), tmp_path / "reef.csv")
+    with pytest.raises(ts.TorsadeError, match="more than the 100000"):
+        PrisonEscape(centerline=str(tmp_path / "reef.csv"), spacing="1 nm").run()
 
 
 def test_strands_that_never_meet_are_refused(tmp_path: Path) -> None:
@@ -173,7 +220,7 @@ def test_a_missing_file_is_named() -> None:
 
 
 def test_what_is_given_replaces_what_it_excludes() -> None:
-    fields = {"knot": "reef", "fixed_step": 1e-4, "force": 3}
+    fields = {"knot": "reef", "lead": "5 mm", "fixed_step": 1e-4, "force": 3}
     assert merged(fields, {"centerline": "a.csv", "tolerance": "1e-3"}) == {
         "force": 3,
         "centerline": "a.csv",

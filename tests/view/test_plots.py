@@ -109,6 +109,11 @@ def test_what_a_result_lacks_is_named(tmp_path):
         plots.plot_tightening(bend(), tmp_path / "a.png")
 
 
+def test_a_dollar_sign_in_a_name_is_no_formula(tmp_path):
+    path = plots.plot_separation(bend(knot="a$b_$", c_f=1.0), tmp_path / "a.png")
+    assert path.stat().st_size > 1000
+
+
 @pytest.mark.parametrize("name", ["a.nonsense", "missing/a.png"])
 def test_an_unwritable_file_is_named(tmp_path, name):
     with pytest.raises(TorsadeError, match=r"a\."):

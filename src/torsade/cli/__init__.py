@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Sequence
 
+from torsade.cli.messages import say
 from torsade.errors import TorsadeError
 
 __all__ = ["main"]
@@ -21,12 +22,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 def _status(arguments: list[str]) -> int:
     """Exit code of a command line; anything the user should know has been printed."""
-    from cyclopts import CycloptsError
-
-    from torsade.cli.app import build, with_protocol
-    from torsade.cli.messages import parse_error, say
-
     try:
+        from cyclopts import CycloptsError
+
+        from torsade.cli.app import build, with_protocol
+        from torsade.cli.messages import parse_error
+
         arguments = with_protocol(arguments)
         app = build(arguments)
         try:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, Group, Parameter
 
 from torsade import __version__
+from torsade.errors import TorsadeError
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
@@ -19,7 +20,10 @@ __all__ = ["OPTIONS", "build", "flag", "with_protocol"]
 OPTIONS: dict[str, tuple[type, str]] = {
     "spec": (str, "TOML file with the fields above; options given here replace those in it."),
     "out": (str, "Write the result to this folder NAME.zarr while it runs."),
-    "picture": (str, "Draw the last frame, coloured by strain, to this PNG file."),
+    "picture": (
+        str,
+        "Draw the last frame, or the last frame before slipping, to this PNG file, coloured by strain.",
+    ),
     "plot": (str, "Plot the history to this file (.png, .pdf or .svg)."),
     "json": (bool, "Print the numbers as JSON, and nothing else, on the standard output."),
     "resume": (bool, "Go on with the --out of an interrupted run of the same specification."),
@@ -29,7 +33,7 @@ OPTIONS: dict[str, tuple[type, str]] = {
 
 EXAMPLES = {
     "prison-escape": '--knot reef --force "15 N" --out reef.zarr --picture reef.png',
-    "tighten": '--centerline trefoil.csv --force "20 mN" --out trefoil.zarr',
+    "tighten": '--knot overhand --force "20 mN" --out overhand.zarr --picture overhand.png',
 }
 
 _WHAT = Group("What to do", sort_key=1)
@@ -79,11 +83,24 @@ def _about(spec: type[Spec]) -> str:
 
 def with_protocol(arguments: list[str]) -> list[str]:
     """`run --spec FILE` names its protocol in the file: put it where a protocol is expected."""
-    if arguments[:1] != ["run"] or len(arguments) < 2 or not arguments[1].startswith("--spec"):
+    if arguments[:1] != ["run"] or len(arguments) < 2 or not arguments[1].startswith("--"):
         return arguments
-    path = arguments[1].removeprefix("--spec").removeprefix("=") or "".join(arguments[2:3])
+    if arguments[1] == "--help":
+        return arguments
+    path = None
+    for k, word in enumerate(arguments):
+        if word == "--spec":
+            path = "".join(arguments[k + 1 : k + 2])
+        elif word.startswith("--spec="):
+            path = word.removeprefix("--spec=")
+    if path is None:
+        from torsade.protocols.files import PROTOCOLS
+
+        known = " or ".join(f"torsade run {name}" for name in PROTOCOLS)
+        option = arguments[1].partition("=")[0]
+        raise TorsadeError(f"{option} comes without a protocol; begin with {known}")
     if not path:
-        return arguments
+        raise TorsadeError("--spec has no value; give a TOML file after it, such as --spec reef.toml")
     from torsade.protocols.files import read_fields
 
     return ["run", read_fields(path)["protocol"], *arguments[1:]]
@@ -139,7 +156,7 @@ def _option(name: str, kind: type, text: str, group: Group) -> inspect.Parameter
 
 def _help(spec: type[Spec], name: str) -> str:
     """Description of a field, with an example of its unit and its default."""
-    from torsade.protocols.base import dimension_of
+    from torsade.protocols.sentences import dimension_of
 
     field = spec.model_fields[name]
     dimension = dimension_of(field)

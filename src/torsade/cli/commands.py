@@ -11,8 +11,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from torsade import places
 from torsade.cli.messages import say
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, reason_of
 from torsade.protocols.files import PROTOCOLS, merged, read_fields
 from torsade.protocols.prison_escape import PrisonEscape
 
@@ -40,54 +41,52 @@ def run(
     """Run one specification: the fields of a file, and those given in their place."""
     wanted = _read(protocol, given, spec)
     _check_drawings(picture, plot)
-    if out is not None and not resume:
-        _announce_restart(out)
     result = _run(wanted, out, resume, overwrite, json)
-    files = [] if out is None else [out]
-    failure = None
-    try:
-        if picture is not None:
-            files.append(_draw(result, picture))
-        if plot is not None:
-            files.append(_plot(result, plot))
-    except TorsadeError as error:
-        failure = error
-    _print(result, files, json)
-    if failure is not None:
-        raise failure
+    _print(result, out, json)
+    _draw(result, out, picture, plot, json)
     return 0
 
 
 def demo(out: str, json: bool) -> int:
     """Pull a reef knot, draw it, and say what to try next."""
-    folder = Path(out)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise TorsadeError(f"cannot make the folder {out!r} ({reason}); give another --out") from None
-    target = folder / "reef.zarr"
-    result = _run(PrisonEscape(knot="reef"), str(target), False, True, json)
-    files = [str(target)]
-    advice = []
-    if _can("pyvista"):
-        files.append(_draw(result, str(folder / "reef.png")))
-    if _can("matplotlib"):
-        files.append(_plot(result, str(folder / "reef-separation.png")))
-    if len(files) < 3:
-        advice.append(f"For pictures of the knot: {INSTALL_VIEW}")
-    _print(result, files, json)
+    spec = PrisonEscape(knot="reef")
+    target, picture, plot = _demo_files(out, spec)
+    result = _run(spec, target, False, True, json)
+    _print(result, target, json)
+    can_draw, can_plot = _can("pyvista"), _can("matplotlib")
+    _draw(result, target, picture if can_draw else None, plot if can_plot else None, json)
     if not json:
-        from rich.console import Console
-
+        advice = [] if can_draw and can_plot else [f"For pictures of the knot: {INSTALL_VIEW}"]
         advice += [
             "Next, compare a knot that slips:",
             "  torsade run prison-escape --knot thief --plot thief.png",
             "or pull your own, two strands in a CSV file:",
             "  torsade run prison-escape --centerline MINE.csv --out mine.zarr",
         ]
-        Console(highlight=False, soft_wrap=True).print("\n".join(advice), markup=False)
+        print("\n".join(advice))
     return 0
+
+
+def _demo_files(out: str, spec: Spec) -> tuple[str, str, str]:
+    """Paths of the result, the picture and the plot; refused when something else has one of the names."""
+    if not out:
+        raise TorsadeError("--out is empty; give the name of a folder, such as --out demo")
+    folder = Path(out)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise TorsadeError(
+            f"cannot make the folder {out!r} ({reason_of(error)}); give another --out"
+        ) from None
+    target, *drawings = (folder / name for name in ("reef.zarr", "reef.png", "reef-separation.png"))
+    found = [places.attributes(path) for path in (target, places.part_of(target))]
+    ours = [json_format.loads(f["spec"]) == spec.stored() for f in found if f is not None]
+    if not all(ours):
+        raise TorsadeError(f"{str(target)!r} is the result of another run; give another --out")
+    for path in drawings:
+        if path.exists() and not ours:
+            raise TorsadeError(f"{str(path)!r} exists and may not be the demo's; give another --out")
+    return str(target), str(drawings[0]), str(drawings[1])
 
 
 def _read(protocol: type[Spec], given: dict[str, str], path: str | None) -> Spec:
@@ -122,24 +121,16 @@ def _check_drawings(picture: str | None, plot: str | None) -> None:
             with tempfile.TemporaryFile(dir=Path(path).parent):
                 pass
         except OSError as error:
-            reason = (error.strerror or str(error)).lower()
             raise TorsadeError(
-                f"cannot write {path!r} ({reason}); give a file in a folder that exists and can be written"
+                f"cannot write {path!r} ({reason_of(error)}); give a file in a folder that exists and can be "
+                "written"
             ) from None
+    if picture is not None and plot is not None and Path(picture).resolve() == Path(plot).resolve():
+        raise TorsadeError(f"--picture and --plot are both {picture!r}; give each a file of its own")
 
 
 def _can(module: str) -> bool:
     return find_spec(module) is not None
-
-
-def _announce_restart(out: str) -> None:
-    from torsade import store
-
-    part = store.part_of(Path(out))
-    found = store.attributes(part)
-    if found is not None and not Path(out).exists():
-        frames = found.get("done", 0)
-        say(f"beginning anew in place of {str(part)!r}, an interrupted run with {frames} frames")
 
 
 def _run(spec: Spec, out: str | None, resume: bool, overwrite: bool, quiet: bool) -> Result:
@@ -173,31 +164,52 @@ def _progress(quiet: bool) -> Iterator[Progress | None]:
 
 
 def _notice(share: float, note: str) -> None:
-    if note.startswith("compiling"):
+    if note.startswith(("compiling", "stopping")):
         say(note)
 
 
-def _draw(result: Result, path: str) -> str:
+def _draw(result: Result, out: str | None, picture: str | None, plot: str | None, quiet: bool) -> None:
+    """Draw what is asked for; what cannot be drawn does not keep the other from being drawn."""
+    from torsade.cli.table import print_file
+
+    failures = []
+    for what, path, draw in (("picture", picture, _picture), ("plot", plot, _plot)):
+        if path is None:
+            continue
+        try:
+            draw(result, path)
+            if not quiet:
+                print_file(what, path)
+        except TorsadeError as error:
+            failures.append(str(error).rstrip("."))
+        except KeyboardInterrupt:
+            kept = f"is complete in {out!r}" if out else "is not kept, since no --out NAME.zarr was given"
+            raise KeyboardInterrupt(f"interrupted while drawing {path!r}; the result {kept}") from None
+    if failures:
+        raise TorsadeError("; ".join(failures))
+
+
+def _picture(result: Result, path: str) -> None:
     from torsade.view.scene import render_result
 
     render_result(result.dataset, path, frame=result.last_held)
-    return path
 
 
-def _plot(result: Result, path: str) -> str:
+def _plot(result: Result, path: str) -> None:
     from torsade.view.plots import plot_separation, plot_tightening
 
     plot = plot_separation if result.protocol == "prison-escape" else plot_tightening
     plot(result.dataset, path)
-    return path
 
 
-def _print(result: Result, files: list[str], json: bool) -> None:
+def _print(result: Result, out: str | None, json: bool) -> None:
     """The numbers of a result, for machines or for people."""
     report = PROTOCOLS[result.protocol].report(result)
     if json:
-        print(json_format.dumps(report, allow_nan=False))
+        print(json_format.dumps(report, allow_nan=False), flush=True)
         return
-    from torsade.cli.table import print_table
+    from torsade.cli.table import print_file, print_table
 
-    print_table(result, report, files)
+    print_table(result, report)
+    if out is not None:
+        print_file("result", out)

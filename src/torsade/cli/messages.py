@@ -6,8 +6,10 @@ import difflib
 import re
 import sys
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from cyclopts import CycloptsError
+if TYPE_CHECKING:
+    from cyclopts import CycloptsError
 
 __all__ = ["parse_error", "say"]
 

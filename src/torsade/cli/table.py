@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -12,54 +12,74 @@ from rich.text import Text
 if TYPE_CHECKING:
     from torsade.results import Result
 
-__all__ = ["print_table"]
+__all__ = ["print_file", "print_table"]
+
+WIDTH = 24
+"""Of the first column: the longest name in it."""
 
 
-def print_table(result: Result, report: dict[str, Any], files: list[str]) -> None:
-    """Print what was done, what came of it, and the files that hold it."""
-    console = Console(highlight=False)
+def print_table(result: Result, report: dict[str, Any]) -> None:
+    """Print what was done and what came of it."""
+    _print((*_asked(result), *_found(result, report), *_spent(report)))
+
+
+def print_file(what: str, path: str) -> None:
+    """Print where a file of the result is, as a further row of the table."""
+    # In one line, however long, so that it can be copied.
+    line = Text.assemble((f"{what:<{WIDTH}}", "bold"), "  ", path)
+    Console(highlight=False, soft_wrap=True).print(line)
+
+
+def _print(rows: Iterable[tuple[str, str]]) -> None:
     table = Table(show_header=False, box=None, pad_edge=False)
-    table.add_column(style="bold", no_wrap=True)
+    table.add_column(style="bold", no_wrap=True, min_width=WIDTH)
     table.add_column(overflow="fold")
-    for name, value in (*_asked(result), *_found(report, result.last_held), *_spent(report)):
+    for name, value in rows:
         table.add_row(name, Text(value))
-    for k, file in enumerate(files):
-        table.add_row("" if k else "files", Text(file))
-    console.print(table)
+    Console(highlight=False).print(table)
 
 
 def _asked(result: Result) -> Iterator[tuple[str, str]]:
-    spec = result.spec
+    spec, attrs = result.spec, result.dataset.attrs
     yield "protocol", result.protocol
-    yield "knot", str(result.dataset.attrs["knot"])
+    yield "knot", str(attrs["knot"])
+    if "pulled" in attrs:
+        yield "pulled", f"{attrs['pulled'][:2]} clamped, {attrs['pulled'][2:]} pulled"
     yield "preset", spec["preset"]
+    yield "fiber", f"{spec['material']}, radius {1e3 * attrs['radius']:g} mm"
     yield "force", f"{spec['force']:g} N for {spec['duration']:g} s"
 
 
-def _found(report: dict[str, Any], held: int) -> Iterator[tuple[str, str]]:
+def _found(result: Result, report: dict[str, Any]) -> Iterator[tuple[str, str]]:
     if "separation_m" in report:
-        yield from _escape(report, held)
+        yield from _escape(report, result.last_held, result.spec["duration"])
     else:
         yield from _tightened(report)
 
 
-def _escape(report: dict[str, Any], held: int) -> Iterator[tuple[str, str]]:
+def _escape(report: dict[str, Any], held: int, duration: float) -> Iterator[tuple[str, str]]:
     """Compression and twist are those of the last frame that held."""
     c_f, speed, slipped = (report[k] for k in ("c_f", "pull_speed_m_per_s", "slipped_at_s"))
+    times = report["times_s"]
+    since = f"from {report['c_f_from_s'] or 0:g} s to {slipped or times[-1]:.3g} s"
     yield "topological friction c_f", "not known: the ends did not part" if c_f is None else f"{c_f:.1f}"
-    yield "mean pull speed", "not known" if speed is None else f"{1e3 * speed:.2f} mm/s"
-    yield "slipped", "no, it holds" if slipped is None else f"at {slipped:.3f} s"
-    yield "separation", _span(report["separation_m"], 1e3, "mm")
-    yield "compression", f"{report['compression_N'][held]:.0f} N"
-    yield "twist", ", ".join(f"{'AB'[k]} {t[held]:+.2f} rad" for k, t in enumerate(report["twist_rad"]))
+    yield "mean pull speed", "not known" if speed is None else f"{1e3 * speed:.2f} mm/s, {since}"
+    yield "slipped", f"no, not within {duration:g} s" if slipped is None else f"at {slipped:.3f} s"
+    yield "separation", _span(report["separation_m"], times)
+    at = f"at {times[held]:.3g} s"
+    yield "compression", f"{report['compression_N'][held]:.0f} N {at}"
+    twist = ", ".join(f"{'AB'[k]} {t[held]:+.2f} rad" for k, t in enumerate(report["twist_rad"]))
+    yield "twist", f"{twist} {at}"
 
 
 def _tightened(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    yield "end to end", _span(report["end_to_end_m"], 1e3, "mm")
-    yield "length", _span(report["length_m"], 1e3, "mm")
-    yield "largest h kappa", f"{report['h_kappa_max'][-1]:.3f}"
-    yield "twist", f"{report['total_twist_rad'][-1]:+.3f} rad"
-    yield "largest log strain", f"{report['max_log_strain'][-1]:.3f}"
+    times = report["times_s"]
+    at = f"at {times[-1]:.3g} s"
+    yield "end to end", _span(report["end_to_end_m"], times)
+    yield "length", _span(report["length_m"], times)
+    yield "largest h kappa", f"{report['h_kappa_max'][-1]:.3f} {at}"
+    yield "twist", f"{report['total_twist_rad'][-1]:+.3f} rad {at}"
+    yield "largest log strain", f"{report['max_log_strain'][-1]:.3f} {at}"
 
 
 def _spent(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
@@ -67,5 +87,6 @@ def _spent(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield "wall time", f"{report['wall_s']:.1f} s"
 
 
-def _span(values: list[float], scale: float, unit: str) -> str:
-    return f"{scale * values[0]:.2f} to {scale * values[-1]:.2f} {unit}"
+def _span(values: list[float], times: list[float]) -> str:
+    """First and last of a length [m], with the times [s] they belong to."""
+    return f"{1e3 * values[0]:.2f} mm at 0 s, {1e3 * values[-1]:.2f} mm at {times[-1]:.3g} s"

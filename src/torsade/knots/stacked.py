@@ -22,16 +22,19 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
+from torsade.centerline import Centerline
 from torsade.curve import resample
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted
+from torsade.knots.drawing import SAMPLES, SPACING, SPACING_RANGE, in_radii, known_radius, spline
 
-__all__ = ["BENDS", "PULLS", "BuiltBend", "bend"]
+__all__ = ["BENDS", "PULLS", "BuiltBend", "bend", "known_name"]
 
 FloatArray = NDArray[np.float64]
 
@@ -49,6 +52,8 @@ _NAMES = MappingProxyType(
 
 BENDS = tuple(_NAMES)
 """Names that `bend` knows."""
+
+_OTHER_NAMES = MappingProxyType({"square": "reef", "hercules": "reef", "bread bag": "thief", "what": "grief"})
 
 # Control points [radii] from the apex of the bight of A to its leg, chosen to use the least fiber, to the
 # digit given, with strands 2.1 radii apart and radius * kappa below 0.47.
@@ -72,14 +77,11 @@ _TAIL_TURN = tuple(math.radians(a) for a in (0, 20, 40, 60, 60, 60))  # of a fre
 _TAIL = 2.5  # lengths of the free ends [leads]
 _LEAD = MappingProxyType({"reef": 16.0, "granny": 20.0})  # [radii]
 _LEAD_RANGE = (14.0, 1e4)  # [radii]
-_SPACING = 0.5  # [radii]
-_SPACING_RANGE = (0.05, 1.0)  # [radii]
-_SAMPLES = 256  # per control point, before resampling: within 1e-5 radii of the spline
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class BuiltBend:
-    """A two-strand tangle with free ends, ready to be pulled.
+@dataclass(frozen=True, eq=False)
+class BuiltBend(Centerline):
+    """A two-strand tangle with free ends, ready to be pulled or written to a file.
 
     Attributes:
         strands: nodes [m] of strands A and B, shapes (n, 3), each from its end 0 to its end 1.
@@ -87,16 +89,15 @@ class BuiltBend:
         pulled: one of `PULLS`; the first end is clamped at -x, the second pulled along +x.
     """
 
-    strands: tuple[FloatArray, FloatArray]
-    name: str
-    pulled: str
+    name: str = ""
+    pulled: str = ""
 
 
 def bend(
     name: str,
-    radius: float = 0.2e-3,
-    lead: float | None = None,
-    spacing: float | None = None,
+    radius: float | str = 0.2e-3,
+    lead: float | str | None = None,
+    spacing: float | str | None = None,
     pulled: str | None = None,
 ) -> BuiltBend:
     """A loose, smooth centerline of one of the `BENDS`.
@@ -104,6 +105,8 @@ def bend(
     The clamped and the pulled end lie on the x axis and leave along it, so nothing turns the knot as a
     whole; the free ends turn away from it by 60°. Nothing touches: parts that are not neighbours are
     2.1 radii apart (2.04 at the coarsest spacing), and radius * kappa stays below 0.48.
+
+    Lengths are numbers in metres, or text with a unit such as "0.2 mm".
 
     Args:
         name: one of `BENDS`; upper and lower case are the same.
@@ -119,21 +122,20 @@ def bend(
     Raises:
         TorsadeError: a name or a pull that is not in the list, or a length out of range.
     """
-    name = _known_name(name)
+    name = known_name(name)
     tangle, usual = _NAMES[name]
     pulled = usual if pulled is None else pulled.strip().upper()
     if pulled not in PULLS:
         raise TorsadeError(
             f"pulled ends {pulled!r} are unknown; choose one of {', '.join(PULLS)}, clamped end first"
         )
-    if not (0 < radius < math.inf):
-        raise TorsadeError(f"radius is {radius:g} m; give a positive length in metres")
-    lead = _LEAD[tangle] if lead is None else _length("lead", lead, _LEAD_RANGE, radius)
-    spacing = _SPACING if spacing is None else _length("spacing", spacing, _SPACING_RANGE, radius)
-    a = _strand(tangle, int(pulled[1]), lead)
-    b = _strand(tangle, int(pulled[3]), lead) * _OTHER_STRAND
-    a, b = (radius * resample(x, spacing=spacing, method="linear") for x in (a, b))
-    return BuiltBend((a, b), name, pulled)
+    h = known_radius(radius)
+    straight = _LEAD[tangle] if lead is None else in_radii("lead", lead, _LEAD_RANGE, h)
+    apart = SPACING if spacing is None else in_radii("spacing", spacing, SPACING_RANGE, h)
+    a = _strand(tangle, int(pulled[1]), straight)
+    b = _strand(tangle, int(pulled[3]), straight) * _OTHER_STRAND
+    a, b = (h * resample(x, spacing=apart, method="linear") for x in (a, b))
+    return BuiltBend((a, b), name=name, pulled=pulled)
 
 
 def _strand(tangle: str, pulled: int, lead: float) -> FloatArray:
@@ -142,7 +144,7 @@ def _strand(tangle: str, pulled: int, lead: float) -> FloatArray:
     throw_1 = throw_2 * _OTHER_THROW[tangle]
     out_1 = _way_out(throw_1[-1], pulled == 0)
     out_2 = _way_out(throw_2[-1], pulled == 1)
-    x = _spline(np.concatenate([out_1[::-1], throw_1[:0:-1], throw_2, out_2]))
+    x = spline(np.concatenate([out_1[::-1], throw_1[:0:-1], throw_2, out_2]))
     x = _lengthened(x, out_2, lead if pulled == 1 else _TAIL * lead)
     return _lengthened(x[::-1], out_1, lead if pulled == 0 else _TAIL * lead)[::-1]
 
@@ -164,40 +166,21 @@ def _way_out(leg: FloatArray, pulled: bool) -> FloatArray:
     return leg + _STEP * np.cumsum(steps, axis=0)
 
 
-def _spline(controls: FloatArray) -> FloatArray:
-    """Points of the uniform cubic B-spline of `controls`, shape (n, 3): `_SAMPLES` edges to each span."""
-    u = (np.arange(_SAMPLES) / _SAMPLES)[:, None]
-    weights = ((1 - u) ** 3, 3 * u**3 - 6 * u**2 + 4, -3 * u**3 + 3 * u**2 + 3 * u + 1, u**3)
-    spans = len(controls) - 3
-    points = np.sum([w * controls[k : k + spans, None] / 6 for k, w in enumerate(weights)], axis=0)
-    last = (controls[-3] + 4 * controls[-2] + controls[-1]) / 6
-    return np.concatenate([points.reshape(-1, 3), last[None]])
-
-
 def _lengthened(x: FloatArray, out: FloatArray, reach: float) -> FloatArray:
     """The curve `x`, which ends on the control points `out`, continued to `reach` [radii] from the leg."""
     ahead = (out[-1] - out[-2]) / np.linalg.norm(out[-1] - out[-2])
-    so_far = np.linalg.norm(np.diff(x[-(_WAY_OUT - 1) * _SAMPLES - 1 :], axis=0), axis=1).sum()
+    so_far = np.linalg.norm(np.diff(x[-(_WAY_OUT - 1) * SAMPLES - 1 :], axis=0), axis=1).sum()
     return np.concatenate([x, x[-1:] + (reach - so_far) * ahead])
 
 
-def _known_name(name: str) -> str:
-    """The name as `BENDS` has it, or an error that says which one is nearest."""
-    known = name.strip().lower()
-    if known in _NAMES:
-        return known
-    near = difflib.get_close_matches(known, BENDS, n=1, cutoff=0.0)
+def known_name(name: str) -> str:
+    """The name as `BENDS` has it, or an error that says which one is meant or what there is."""
+    plain = re.sub(r"[\s_-]+(knot|bend)$", "", name.strip().lower())
+    if plain in _NAMES:
+        return plain
+    near = [_OTHER_NAMES[plain]] if plain in _OTHER_NAMES else difflib.get_close_matches(plain, BENDS, n=1)
+    hint = f"did you mean {near[0]!r}? " if near else ""
     raise TorsadeError(
-        f"no bend is called {name!r}; the nearest name is {near[0]!r}, choose one of {', '.join(BENDS)}"
-    )
-
-
-def _length(what: str, value: float, radii: tuple[float, float], h: float) -> float:
-    """`value` [m] in units of the radius h [m], within bounds that are also in radii."""
-    low, high = radii
-    # The bounds give way to rounding, so that low * h itself passes; a comparison with nan is false.
-    if low * (1 - 1e-12) <= value / h <= high * (1 + 1e-12):
-        return value / h
-    raise TorsadeError(
-        f"{what} is {value:g} m; give {low * h:g} to {high * h:g} m, which is {low:g} to {high:g} radii"
+        f"no bend is called {quoted(name)}; {hint}choose one of {', '.join(BENDS)}, or pull a centerline of "
+        "your own (--centerline FILE.csv)"
     )

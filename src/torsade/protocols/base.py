@@ -7,20 +7,19 @@ written into every result. Nothing heavy is imported until it runs, so that help
 from __future__ import annotations
 
 import dataclasses
-import difflib
-import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, get_args
+from pathlib import Path, PurePath
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
-from pydantic.fields import FieldInfo
 
-from torsade.errors import TorsadeError
+from torsade.errors import QuantityError, TorsadeError, quoted
 from torsade.material import Material, Section
 from torsade.material import preset as material_preset
-from torsade.units import Dimension, Length, Number, Pressure, Time, Viscosity
+from torsade.protocols.sentences import sentence
+from torsade.units import Length, Number, Pressure, Time, Viscosity, quantity
 
 if TYPE_CHECKING:
     from torsade.arrays import Floats
@@ -30,10 +29,17 @@ if TYPE_CHECKING:
     from torsade.motion.overdamped import Laws, Stepping
     from torsade.results import Result
 
-__all__ = ["STANDARD_SPACING", "Experiment", "Progress", "Spec", "dimension_of"]
+__all__ = ["STANDARD_SPACING", "Experiment", "Progress", "Spec"]
 
 STANDARD_SPACING = 0.5  # radii
 """Greatest distance between nodes in the standard preset."""
+
+PUBLISHED_SPACING = 0.69  # radii
+"""The same for built-in knots in the published preset: the mean edge of the published reef, thief, granny
+and grief."""
+
+LARGEST_STRAIN = 0.5
+"""Strain F/EA beyond which neither linear elasticity nor a rest length means anything."""
 
 PUBLISHED_STEP = 1e-4
 """Fixed time step of the published preset [s]."""
@@ -52,10 +58,12 @@ class Experiment(NamedTuple):
     boundary : ends and loads
     measure : state → scalars of one frame, besides those that every protocol records
     derive : recorded histories (n_frames,) → further histories that follow from them
-    conclude : recorded histories, and the time [s] at which nothing resisted the load any more or None
-        → numbers that belong to the run as a whole
+    conclude : samples, and the time [s] at which nothing resisted the load any more or None → numbers that
+        belong to the run as a whole
     catch : called when nothing resists the load: move the state, in place, to where something does, and
         say whether there is such a place
+    sampled : measures that `conclude` needs, recorded at times that do not depend on the number of frames
+    about : attributes of the result, in words
     """
 
     boundary: Boundary
@@ -63,6 +71,8 @@ class Experiment(NamedTuple):
     derive: Callable[[Mapping[str, Floats]], dict[str, Floats]]
     conclude: Callable[[Mapping[str, Floats], float | None], dict[str, float]]
     catch: Callable[[State], bool] = lambda state: False
+    sampled: tuple[str, ...] = ()
+    about: Mapping[str, str] = MappingProxyType({})
 
 
 class Spec(BaseModel, ABC):
@@ -79,10 +89,17 @@ class Spec(BaseModel, ABC):
         "time": "there is no field 'time'; did you mean 'duration'?",
         "file": "there is no field 'file'; did you mean 'centerline'?",
         "dt": "there is no field 'dt'; did you mean 'fixed_step'?",
+        "diameter": "there is no field 'diameter'; give 'radius', half of it",
+        "thickness": "there is no field 'thickness'; give 'radius', half of it",
     }
     """What to say to those who give a field that this protocol does not have."""
 
     protocol: str
+    knot: str | None
+    centerline: str | None
+    length_unit: str | None = Field(
+        None, description="Unit of x, y, z in the centerline's file, such as mm; by default m."
+    )
     material: str = Field(
         "nylon", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
     )
@@ -104,16 +121,19 @@ class Spec(BaseModel, ABC):
     preset: Literal["standard", "published"] = Field(
         "standard",
         description="Model: standard (converging laws, resampled nodes, error-controlled steps) or "
-        "published (the thesis's own program, on the nodes as given).",
+        "published (the thesis's own program, on the nodes as given or as far apart as those published).",
     )
     duration: Annotated[Time, Positive] = Field(1.0, description="How long to pull.")
     frames: int = Field(
-        100, ge=1, le=1_000_000, description="Evenly spaced frames to record after the one at t = 0."
+        100,
+        ge=1,
+        le=1_000_000,
+        description="Frames to record after the one at t = 0, evenly spaced: N of them end N intervals.",
     )
     spacing: Annotated[Length, Positive] | None = Field(
         None,
-        description="Greatest distance between nodes; by default half a radius, or the nodes as given when "
-        "published.",
+        description="Greatest distance between nodes; by default half a radius; when published, the nodes "
+        "as given, or 0.69 radii for a built-in knot.",
     )
     tolerance: Annotated[Number, Positive] | None = Field(
         None,
@@ -141,7 +161,7 @@ class Spec(BaseModel, ABC):
     drag: Literal["continuum", "node-pair"] | None = Field(
         None, description="Collision drag law, continuum or node-pair; by default the preset's."
     )
-    exclusion_edges: Annotated[int, Field(ge=1)] | None = Field(
+    exclusion_edges: Annotated[int, Field(ge=1, le=1_000_000)] | None = Field(
         None,
         description="No contact between edges at most so many apart along a fiber; by default the preset's.",
     )
@@ -159,7 +179,26 @@ class Spec(BaseModel, ABC):
             try:
                 super().__init__(**fields)
             except ValidationError as error:
-                raise TorsadeError(_sentence(type(self), error)) from None
+                raise TorsadeError(sentence(type(self), error)) from None
+
+    @field_validator("frames", "exclusion_edges", mode="before")
+    @classmethod
+    def _no_truth_value(cls, value: object) -> object:
+        if isinstance(value, bool):
+            raise QuantityError(f"is {value}; give a whole number")
+        return value
+
+    @field_validator("length_unit")
+    @classmethod
+    def _a_unit(cls, unit: str | None) -> str | None:
+        if unit is not None:
+            try:
+                quantity(f"1 {unit}", "length")
+            except QuantityError:
+                raise QuantityError(
+                    f"{quoted(unit)} is no unit of length; give m, mm, cm, um or in"
+                ) from None
+        return unit
 
     @field_validator("material")
     @classmethod
@@ -175,6 +214,29 @@ class Spec(BaseModel, ABC):
                 "fixed_step for steps of one length, or tolerance for error-controlled steps"
             )
         return self
+
+    def check_shape(self, advice: str) -> None:
+        """Refuse two shapes, or none, or a unit for none."""
+        if self.knot is not None and self.centerline is not None:
+            raise TorsadeError(
+                f"knot {self.knot!r} and centerline {self.centerline!r} are both given; give one of them"
+            )
+        if self.knot is None and self.centerline is None:
+            raise TorsadeError(f"nothing to pull is given; {advice}")
+        if self.knot is not None and self.length_unit is not None:
+            raise TorsadeError(
+                f"length_unit {self.length_unit!r} belongs to a centerline; leave it out, or give one"
+            )
+
+    def check_strain(self, force: float) -> None:
+        """Refuse a pull [N] under which the fiber is no longer elastic in any sense."""
+        EA = self.fiber_material.E * self.section.A
+        if force > LARGEST_STRAIN * EA:
+            raise TorsadeError(
+                f"a force of {force:.3g} N would stretch this fiber by F/EA = {force / EA:.3g}, and the "
+                f"model holds for {LARGEST_STRAIN:g} at most; give a force of at most "
+                f"{LARGEST_STRAIN * EA:.3g} N, or another material, E or radius"
+            )
 
     @property
     def h(self) -> float:
@@ -220,9 +282,15 @@ class Spec(BaseModel, ABC):
     @property
     def node_spacing(self) -> float | None:
         """Greatest distance between nodes [m]; None to keep the nodes as they are given."""
-        if self.spacing is None and self.preset == "published":
-            return None
-        return STANDARD_SPACING * self.h if self.spacing is None else self.spacing
+        if self.spacing is not None:
+            return self.spacing
+        if self.preset == "published":
+            return PUBLISHED_SPACING * self.h if self.knot is not None else None
+        return STANDARD_SPACING * self.h
+
+    def stored(self) -> dict[str, Any]:
+        """The fields as a result holds them: those that were given or have defaults."""
+        return self.model_dump(mode="json", exclude_none=True)
 
     def run(
         self,
@@ -254,9 +322,9 @@ class Spec(BaseModel, ABC):
         return drive(self, progress, out, resume, overwrite)
 
     @property
-    @abstractmethod
     def shape_name(self) -> str:
-        """Name of what is pulled, for tables and titles."""
+        """Name of what is pulled, for tables and titles: the knot's, or that of the centerline's file."""
+        return self.knot or PurePath(str(self.centerline)).stem
 
     @abstractmethod
     def configuration(self) -> Centerline:
@@ -270,73 +338,3 @@ class Spec(BaseModel, ABC):
     @abstractmethod
     def report(cls, result: Result) -> dict[str, Any]:
         """The numbers of a result under the keys of `--json`."""
-
-
-def dimension_of(field: FieldInfo) -> Dimension | None:
-    """What a field of a specification measures; None for names and counts."""
-    found = [m for m in field.metadata if isinstance(m, Dimension)]
-    for choice in get_args(field.annotation):
-        found += [m for m in getattr(choice, "__metadata__", ()) if isinstance(m, Dimension)]
-    return found[0] if found else None
-
-
-def _sentence(spec: type[Spec], error: ValidationError) -> str:
-    """The first of pydantic's complaints, as what was given, what was expected and what to do."""
-    complaints = error.errors()
-    # A misspelt field explains the one that is missing.
-    first = next((c for c in complaints if c["type"] == "extra_forbidden"), complaints[0])
-    name = str(first["loc"][0]) if first["loc"] else ""
-    kind, given, context = first["type"], _quote(first["input"]), first.get("ctx", {})
-    reason = context.get("error")
-    if isinstance(reason, TorsadeError):
-        # Messages about quantities begin with what was given; the others name their subject.
-        return f"{name} {reason}" if name and str(reason)[0] in "'\"-0123456789ni[{" else str(reason)
-    if kind == "extra_forbidden":
-        return _unknown_field(spec, name)
-    if kind == "missing":
-        wanted = (spec.model_fields[name].description or "").rstrip(".")
-        return f"{name} is missing; give a {wanted}"
-    if kind == "literal_error":
-        choices = context["expected"].replace("'", "").replace(" or ", ", ").split(", ")
-        near = difflib.get_close_matches(str(first["input"]), choices, n=1)
-        hint = f"did you mean {near[0]!r}? " if near else ""
-        return f"{name} is {given}; {hint}choose one of {', '.join(choices)}"
-    bounds = {
-        "greater_than": ("above", "gt"),
-        "greater_than_equal": ("of at least", "ge"),
-        "less_than": ("below", "lt"),
-        "less_than_equal": ("of at most", "le"),
-    }
-    if kind in bounds:
-        word, key = bounds[kind]
-        field = spec.model_fields[name]
-        dimension = dimension_of(field)
-        what = f"a {dimension.name}" if dimension else "a number"
-        unit = f" {dimension.unit}" if dimension and dimension.unit else ""
-        return f"{name} is {given}; give {what} {word} {context[key]:g}{unit}"
-    return f"{name} is {given}; {_expected(spec, name)}"
-
-
-def _unknown_field(spec: type[Spec], name: str) -> str:
-    if name in spec.hints:
-        return spec.hints[name]
-    known = [k for k in spec.model_fields if k != "protocol"]
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    hint = f"did you mean {near[0]!r}?" if near else f"choose among {', '.join(known)}"
-    return f"{spec.model_fields['protocol'].default} has no field {name!r}; {hint}"
-
-
-def _expected(spec: type[Spec], name: str) -> str:
-    field = spec.model_fields[name]
-    dimension = dimension_of(field)
-    if dimension:
-        return f'give a {dimension.name} such as "{dimension.example}"'
-    text = str(field.annotation)
-    return "give a whole number" if "int" in text else "give text"
-
-
-def _quote(value: object) -> str:
-    if isinstance(value, float) and math.isfinite(value):
-        return f"{value:g}"
-    text = repr(value)
-    return text if len(text) <= 60 else text[:56] + "..." + text[-1]

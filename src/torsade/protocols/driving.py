@@ -2,35 +2,44 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
-import signal
-import threading
+import json
+import math
 import time
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from torsade import _compile, observables
 from torsade.arrays import Floats
 from torsade.assembly import Assembly, State, assemble, initial_state
-from torsade.centerline import Centerline, check, read_csv
-from torsade.curve import resample
 from torsade.errors import TorsadeError
 from torsade.motion.overdamped import Motion, Outcome, model
-from torsade.recording import Recording
+from torsade.protocols.patience import Interrupted, Patience
+from torsade.protocols.shapes import check_frames
+from torsade.recording import SAMPLE, Recording
 from torsade.results import Result
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Experiment, Progress, Spec
 
-__all__ = ["Interrupted", "drive", "read_centerline"]
+__all__ = ["Interrupted", "drive"]
 
-STEPS_AT_ONCE = 2000
-"""Steps between looks at the clock of the screen and at Ctrl-C. Part of what makes runs repeat to the
-bit: the stepper makes a new neighbour list whenever it is called."""
+NODE_STEPS_AT_ONCE = 60_000
+"""Steps times nodes between looks at the screen and at Ctrl-C: about 0.2 s.
 
+A number and not a time, since the stepper makes a new neighbour list whenever it is called, and runs must
+repeat to the bit.
+"""
+
+SAMPLE_EVERY = 0.01
+"""Greatest time between samples [s]."""
+
+FEWEST_SAMPLES, MOST_SAMPLES = 100, 1_000_000
+"""Samples of a run, after the one at t = 0."""
 
 SETTLING = 10
 """Fixed steps for which strands that just met are advanced in error-controlled steps instead.
@@ -55,76 +64,13 @@ COMMON = (
 """What every protocol records."""
 
 
-class Patience:
-    """While it lasts, Ctrl-C waits for the next call of `end`, so that no step or write is cut in half.
-
-    A second Ctrl-C does not wait. Another handler than Python's own is left in place.
-    """
-
-    def __init__(self) -> None:
-        self._asked = False
-        self._installed = False
-
-    def __enter__(self) -> Patience:
-        ours = threading.current_thread() is threading.main_thread()
-        if ours and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-            signal.signal(signal.SIGINT, self._note)
-            self._installed = True
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._installed:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
-
-    def _note(self, *_: object) -> None:
-        if self._asked:
-            raise KeyboardInterrupt
-        self._asked = True
-
-    def end(self) -> None:
-        """Raise KeyboardInterrupt if Ctrl-C was pressed."""
-        if self._asked:
-            raise KeyboardInterrupt
-
-
-class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a run, after what there is was saved.
-
-    Attributes: `time` reached [s], `frames` recorded, `part`, the folder that holds them, or None.
-    """
-
-    def __init__(self, time: float, frames: int, part: Path | None) -> None:
-        self.time, self.frames, self.part = time, frames, part
-        reached = f"at t = {time:.4g} s" if frames else "before the first frame"
-        kept = "nothing is saved" if part is None else f"{frames} frames are saved in {str(part)!r}"
-        super().__init__(f"interrupted {reached}; {kept}")
-
-
-def read_centerline(path: str, spec: Spec, strands: int, wanted: str) -> Centerline:
-    """Open strands from a CSV file, checked as given, then resampled as the specification wants."""
-    shape = read_csv(path)
-    if len(shape.strands) != strands:
-        other = {1: "tighten takes one", 2: "prison-escape takes two"}.get(len(shape.strands))
-        advice = f"; {other}" if other else ""
-        has = "1 strand" if len(shape.strands) == 1 else f"{len(shape.strands)} strands"
-        raise TorsadeError(f"{path!r} has {has}, and {wanted}{advice or f'; give {strands}'}")
-    check(shape, spec.h)
-    for k, closed in enumerate(shape.closed):
-        if closed:
-            raise TorsadeError(f"strand {k} in {path!r} is closed and has no ends to pull; cut it open")
-    if spec.node_spacing is None:
-        return shape
-    resampled = Centerline(tuple(resample(x, spacing=spec.node_spacing) for x in shape.strands))
-    check(resampled, spec.h)
-    return resampled
-
-
 def drive(
     spec: Spec, progress: Progress | None, out: str | Path | None, resume: bool, overwrite: bool
 ) -> Result:
     """Run a specification; see `Spec.run`."""
     tell = progress or (lambda share, note: None)
     shape = spec.configuration()
+    check_frames(spec.frames + 1, sum(len(x) for x in shape.strands))
     assembly = assemble(shape.strands, shape.closed)
     state = initial_state(assembly, shape.strands)
     experiment = spec.experiment(assembly, state)
@@ -136,27 +82,30 @@ def drive(
         spec.stepping,
     )
     recording = _begin(spec, assembly, state, experiment, out, resume, overwrite)
-    if recording.complete:
-        return recording.result()
     try:
-        tell(0.0, "getting ready" if _compiled() else "compiling the kernels, this once (about a minute)")
+        if recording.complete:
+            return recording.result()
+        tell(0.0, _preparation())
         _warm_up(motion)
         if recording.checkpoint is not None:
             motion.restore(recording.checkpoint)
-        with Patience() as patience:
-            loose_at = _record(spec, experiment, motion, recording, tell, patience)
-            return recording.finish(experiment.conclude(recording.histories(), loose_at))
+        clock = _Clock(spec.duration, motion, tell)
+        with Patience(clock.stopping) as patience:
+            loose_at = _record(spec, experiment, motion, recording, clock, patience)
+            return recording.finish(experiment.conclude(recording.samples(), loose_at))
     except KeyboardInterrupt:
         recording.stop("interrupted")
-        raise Interrupted(motion.time, recording.done, recording.part) from None
+        raise Interrupted(recording.reached, recording.done, recording.part) from None
     except TorsadeError as error:
-        if recording.part is None:
-            raise
         with suppress(TorsadeError):  # a full disk cannot take the last frames either
             recording.stop("failed")
+        if recording.part is None:
+            raise
         raise TorsadeError(
             f"{str(error).rstrip('.')} (the frames until then are in {str(recording.part)!r})"
         ) from None
+    finally:
+        recording.close()
 
 
 def _begin(
@@ -171,17 +120,20 @@ def _begin(
     """A recording for all that this protocol measures."""
     attrs = {
         "protocol": spec.protocol,
-        "spec": spec.model_dump_json(exclude_none=True),
+        "spec": json.dumps(spec.stored()),
         "knot": spec.shape_name,
         "radius": spec.h,
+        "model": json.dumps(_meaning(spec)),
         "start": hashlib.sha256(state.x.tobytes()).hexdigest(),
-    }
+    } | dict(experiment.about)
     own = experiment.measure(state)
     first = {name: np.array([value]) for name, value in ({"time": 0.0} | own).items()}
+    samples = [SAMPLE + name for name in ("time", *experiment.sampled)] if experiment.sampled else []
     return Recording.begin(
         assembly,
         spec.frames + 1,
-        (*COMMON, *own, *experiment.derive(first)),
+        len(_sample_times(spec, experiment)),
+        (*COMMON, *own, *experiment.derive(first), *samples),
         attrs,
         experiment.derive,
         out,
@@ -198,9 +150,67 @@ def _warm_up(motion: Motion) -> None:
     motion.restore(start)
 
 
-def _compiled() -> bool:
-    """Whether an earlier run has left compiled kernels."""
-    return _compile.CACHE is not None and any(_compile.CACHE.rglob("*.nbc"))
+def _preparation() -> str:
+    """What there is to do before the first step."""
+    if _compile.CACHE is None:
+        return "compiling the kernels (about a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
+    kept = any(_compile.CACHE.rglob("*.nbc"))
+    return "getting ready" if kept else "compiling the kernels, this once (about a minute)"
+
+
+class _Clock:
+    """Tells how far a run has come."""
+
+    def __init__(self, duration: float, motion: Motion, tell: Progress) -> None:
+        self._duration, self._motion, self._tell = duration, motion, tell
+
+    def tick(self) -> None:
+        """Say what time it is."""
+        self._say(f"t = {self._motion.time:.3f} s")
+
+    def stopping(self) -> None:
+        """Say that Ctrl-C was heard."""
+        self._say("stopping ... (Ctrl-C again to stop at once)")
+
+    def _say(self, note: str) -> None:
+        self._tell(self._motion.time / self._duration, note)
+
+
+def _meaning(spec: Spec) -> dict[str, Any]:
+    """The numbers behind the names in a specification, which another version may understand otherwise."""
+    laws, stepping, material = (
+        dataclasses.asdict(part) for part in (spec.laws, spec.stepping, spec.fiber_material)
+    )
+    del material["source"]
+    return {
+        "material": material,
+        "radius": spec.h,
+        "laws": laws,
+        "stepping": stepping,
+        "spacing": spec.node_spacing,
+    }
+
+
+def _sample_times(spec: Spec, experiment: Experiment) -> Floats:
+    """Times of samples [s], none when nothing is sampled: every 10 ms, or a hundred in a short run."""
+    if not experiment.sampled:
+        return np.empty(0)
+    wanted = math.ceil(spec.duration / SAMPLE_EVERY * (1 - 1e-9))
+    return np.linspace(0.0, spec.duration, min(max(wanted, FEWEST_SAMPLES), MOST_SAMPLES) + 1)
+
+
+def _stops(spec: Spec, experiment: Experiment) -> list[tuple[float, bool, bool]]:
+    """Times at which something is recorded [s], and whether that is a frame, a sample or both."""
+    frames = np.linspace(0.0, spec.duration, spec.frames + 1)
+    stops: list[tuple[float, bool, bool]] = []
+    marked = [(t, True, False) for t in frames.tolist()]
+    marked += [(t, False, True) for t in _sample_times(spec, experiment).tolist()]
+    for t, frame, sample in sorted(marked, key=lambda stop: stop[0]):
+        if stops and t - stops[-1][0] <= 1e-9 * spec.duration:
+            t, *before = stops.pop()
+            frame, sample = frame or before[0], sample or before[1]
+        stops.append((t, frame, sample))
+    return stops
 
 
 def _record(
@@ -208,34 +218,46 @@ def _record(
     experiment: Experiment,
     motion: Motion,
     recording: Recording,
-    tell: Progress,
+    clock: _Clock,
     patience: Patience,
 ) -> float | None:
-    """Move from frame to frame to the end; returns when nothing resisted the load any more [s], or None."""
-    times = np.linspace(0.0, spec.duration, spec.frames + 1)
+    """Move from stop to stop to the end; returns when nothing resisted the load any more [s], or None."""
     began = time.perf_counter() - recording.wall
-    for k in range(recording.done, len(times)):
-        outcome = Outcome.REACHED if k == 0 else _advance(experiment, motion, float(times[k]), patience)
-        tell(motion.time / spec.duration, f"t = {motion.time:.3f} s")
+    before = max(recording.reached, motion.time) if recording.done else -math.inf
+    for t, frame, sample in _stops(spec, experiment):
+        if t <= before:
+            continue
+        outcome = Outcome.REACHED if t == 0 else _advance(experiment, motion, t, clock, patience)
         slipped = outcome is Outcome.SLIPPED
-        if not slipped or motion.time > times[k - 1]:
-            frame = _frame(experiment, motion, spec.h)
-            recording.add(frame, motion.checkpoint(), time.perf_counter() - began)
+        if not slipped or motion.time > before:
+            if sample or (slipped and experiment.sampled):
+                now = experiment.measure(motion.state)
+                recording.sample({"time": motion.time} | {name: now[name] for name in experiment.sampled})
+            if frame or slipped:
+                recording.add(_frame(experiment, motion, spec.h))
+            recording.keep(motion.checkpoint(), time.perf_counter() - began)
         if slipped:
             return motion.time
+        before = t
+        clock.tick()
     return None
 
 
-def _advance(experiment: Experiment, motion: Motion, until: float, patience: Patience) -> Outcome:
+def _advance(
+    experiment: Experiment, motion: Motion, until: float, clock: _Clock, patience: Patience
+) -> Outcome:
     """Advance to a time [s], taking up slack whenever nothing resists the load and something still can."""
+    at_once = max(1, NODE_STEPS_AT_ONCE // len(motion.state.x))
     caught_at = -1
     outcome = Outcome.PAUSED
     while outcome is Outcome.PAUSED:
-        outcome = motion.advance(until, STEPS_AT_ONCE)
+        outcome = motion.advance(until, at_once)
         patience.end()
         if outcome is Outcome.SLIPPED and motion.steps > caught_at and experiment.catch(motion.state):
             caught_at = motion.steps
             outcome = _settle(motion, until)
+        if outcome is Outcome.PAUSED:
+            clock.tick()
     return outcome
 
 

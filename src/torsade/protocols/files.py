@@ -13,7 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, reason_of
 from torsade.protocols.base import Spec
 from torsade.protocols.prison_escape import PrisonEscape
 from torsade.protocols.tighten import Tighten
@@ -25,8 +25,15 @@ PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
 )
 """The specification of every protocol, by name."""
 
-_EITHER = (("knot", "centerline"), ("tolerance", "fixed_step"))
-"""Fields that exclude each other: giving one replaces the other."""
+_REPLACES = MappingProxyType(
+    {
+        "knot": ("centerline", "length_unit"),
+        "centerline": ("knot", "lead"),
+        "tolerance": ("fixed_step",),
+        "fixed_step": ("tolerance",),
+    }
+)
+"""What a field that is given leaves no room for."""
 
 
 def load_spec(path: str | Path) -> Spec:
@@ -55,8 +62,8 @@ def read_fields(path: str | Path) -> dict[str, Any]:
         if isinstance(error, tomllib.TOMLDecodeError):
             reason = str(error).rstrip(".")
             raise TorsadeError(f'{name} is not TOML: {reason}; write lines such as force = "15 N"') from None
-        reason = getattr(error, "strerror", None) or "not text in UTF-8"
-        raise TorsadeError(f"cannot read {name} ({reason.lower()}); give a TOML specification") from None
+        reason = reason_of(error) if isinstance(error, OSError) else "not text in UTF-8"
+        raise TorsadeError(f"cannot read {name} ({reason}); give a TOML specification") from None
     protocol = fields.get("protocol")
     if protocol is None:
         raise TorsadeError(
@@ -75,10 +82,6 @@ def read_fields(path: str | Path) -> dict[str, Any]:
 
 
 def merged(fields: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
-    """Fields of a file with others given in their place; of two that exclude each other the given stays."""
-    kept = dict(fields)
-    for pair in _EITHER:
-        if any(name in given for name in pair):
-            for name in pair:
-                kept.pop(name, None)
-    return kept | given
+    """Fields of a file with others given in their place; what those exclude is left out."""
+    excluded = {name for field in given for name in _REPLACES.get(field, ())}
+    return {name: value for name, value in fields.items() if name not in excluded} | given

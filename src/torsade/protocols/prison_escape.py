@@ -38,12 +38,13 @@ class PrisonEscape(Spec):
         **Spec.hints,
         "bend": "there is no field 'bend'; did you mean 'knot'?",
         "name": "there is no field 'name'; did you mean 'knot'?",
+        "length": "there is no field 'length'; a built-in knot takes 'lead', a centerline has its own",
     }
 
     protocol: Literal["prison-escape"] = "prison-escape"
     knot: str | None = Field(None, description="Built-in bend: reef, thief, granny or grief.")
     centerline: str | None = Field(
-        None, description="CSV file of two strands, columns strand,x,y,z [m], in place of a knot."
+        None, description="CSV file of two strands, columns strand,x,y,z, in place of a knot."
     )
     pulled: str | None = Field(
         None,
@@ -61,6 +62,18 @@ class PrisonEscape(Spec):
         "x", description="Direction of the pull: x, -x, y, -y, z, -z, or line (away from the clamped end)."
     )
 
+    @field_validator("knot")
+    @classmethod
+    def _known_knot(cls, name: str | None) -> str | None:
+        if name is None:
+            return None
+        from torsade.knots.overhand import STRAND_KNOTS
+        from torsade.knots.stacked import known_name
+
+        if name.strip().lower() in STRAND_KNOTS:
+            raise TorsadeError(f"{name!r} is a knot in one strand; give torsade run tighten --knot {name}")
+        return known_name(name)
+
     @field_validator("pulled")
     @classmethod
     def _two_ends(cls, text: str | None) -> str | None:
@@ -76,41 +89,23 @@ class PrisonEscape(Spec):
 
     @model_validator(mode="after")
     def _knot_or_centerline(self) -> PrisonEscape:
-        if self.knot is not None and self.centerline is not None:
-            raise TorsadeError(
-                f"knot {self.knot!r} and centerline {self.centerline!r} are both given; give one of them"
-            )
-        if self.knot is None and self.centerline is None:
-            raise TorsadeError(
-                'nothing to pull is given; give a knot such as "reef", or a centerline, a CSV file of two '
-                "strands"
-            )
+        self.check_shape('give a knot such as "reef", or a centerline, a CSV file of two strands')
         if self.knot is None and self.lead is not None:
             raise TorsadeError("a centerline has the leads that it has; leave lead out, or give a knot")
+        self.check_strain(self.force)
         return self
-
-    @property
-    def shape_name(self) -> str:
-        """The knot, or the name of the centerline's file."""
-        from pathlib import PurePath
-
-        return self.knot.strip().lower() if self.knot is not None else PurePath(str(self.centerline)).stem
 
     def configuration(self) -> Centerline:
         """Two open strands, checked, at the resolution of the run."""
-        from torsade.centerline import Centerline, check
-        from torsade.protocols.driving import read_centerline
+        from torsade.protocols.shapes import check_built, read_centerline
 
-        if self.knot is not None:
-            from torsade.knots.stacked import bend
+        if self.knot is None:
+            return read_centerline(str(self.centerline), self, 2, "prison-escape pulls two strands")
+        from torsade.knots.stacked import bend
 
-            # The bend does not care which of its two ends is the clamped one.
-            pulled = None if self.pulled is None else "".join(sorted((self.pulled[:2], self.pulled[2:])))
-            built = bend(self.knot, self.h, self.lead, self.node_spacing, pulled)
-            shape = Centerline(built.strands)
-            check(shape, self.h)
-            return shape
-        return read_centerline(str(self.centerline), self, 2, "prison-escape pulls two strands")
+        # The bend does not care which of its two ends is the clamped one.
+        pulled = None if self.pulled is None else "".join(sorted((self.pulled[:2], self.pulled[2:])))
+        return check_built(bend(self.knot, self.h, self.lead, self.node_spacing, pulled), self.h)
 
     def grips(self) -> tuple[tuple[int, int], tuple[int, int]]:
         """(strand, end) of the clamped and of the pulled end."""
@@ -154,6 +149,7 @@ class PrisonEscape(Spec):
             )
             numbers = {
                 "c_f": found.c_f,
+                "c_f_from_s": found.start,
                 "pull_speed_m_per_s": found.speed,
                 "slipped_at_s": found.slipped_at,
             }
@@ -170,7 +166,8 @@ class PrisonEscape(Spec):
                 f"strand {'AB'[pulled[0]]} pulled along {self.direction} never meets strand "
                 f"{'AB'[clamped[0]]}; give two strands that are hooked, or other ends in pulled"
             )
-        return Experiment(boundary, measure, derive, conclude, catch)
+        about = {"pulled": "".join(f"{'AB'[s]}{e}" for s, e in (clamped, pulled))}
+        return Experiment(boundary, measure, derive, conclude, catch, ("separation",), about)
 
     def _axis(self, apart: Floats) -> Floats:
         """Unit vector of the pull, which must lead away from the clamped end, `apart` [m] before it."""
@@ -197,8 +194,10 @@ class PrisonEscape(Spec):
         return {
             "protocol": "prison-escape",
             "knot": attrs["knot"],
+            "pulled": attrs["pulled"],
             "preset": result.spec["preset"],
             "c_f": attrs.get("c_f"),
+            "c_f_from_s": attrs.get("c_f_from_s"),
             "pull_speed_m_per_s": attrs.get("pull_speed_m_per_s"),
             "slipped_at_s": attrs.get("slipped_at_s"),
             "times_s": data["time"].values.tolist(),

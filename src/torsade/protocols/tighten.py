@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import PurePath
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator, model_validator
 
+from torsade.errors import TorsadeError
 from torsade.protocols.base import Experiment, Positive, Spec
 from torsade.units import Force
 
@@ -27,31 +27,53 @@ class Tighten(Spec):
 
     hints: ClassVar[Mapping[str, str]] = {
         **Spec.hints,
-        "knot": "tighten has no built-in knots yet; give a centerline, a CSV file of one strand",
-        "bend": "tighten pulls a knot in one strand; give a centerline, or run prison-escape for a bend",
+        "bend": "tighten pulls a knot in one strand; give a knot such as 'overhand', or run prison-escape",
+        "length": "there is no field 'length'; a centerline is as long as given",
+        "lead": "there is no field 'lead'; a built-in knot has the ends that it has, and so has a centerline",
         "pulled": "tighten pulls both ends, so there is no field 'pulled'; leave it out",
         "direction": "tighten pulls along -x and +x, so there is no field 'direction'; leave it out",
     }
 
     protocol: Literal["tighten"] = "tighten"
-    centerline: str = Field(
-        description="CSV file of one strand, columns strand,x,y,z [m], strand 0 throughout."
+    knot: str | None = Field(None, description="Built-in knot in one strand: overhand.")
+    centerline: str | None = Field(
+        None,
+        description="CSV file of one strand, columns strand,x,y,z with strand 0, in place of a knot.",
     )
     material: str = Field(
         "optomechanical", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
     )
     force: Annotated[Force, Positive] = Field(0.02, description="Force on each end.")
 
-    @property
-    def shape_name(self) -> str:
-        """The name of the centerline's file."""
-        return PurePath(self.centerline).stem
+    @field_validator("knot")
+    @classmethod
+    def _known_knot(cls, name: str | None) -> str | None:
+        if name is None:
+            return None
+        from torsade.knots.overhand import known_strand_knot
+        from torsade.knots.stacked import BENDS
+
+        if name.strip().lower() in BENDS:
+            raise TorsadeError(
+                f"{name!r} is a bend of two strands; give torsade run prison-escape --knot {name}"
+            )
+        return known_strand_knot(name)
+
+    @model_validator(mode="after")
+    def _bearable(self) -> Tighten:
+        self.check_shape('give a knot, "overhand", or a centerline, a CSV file of one strand')
+        self.check_strain(self.force)
+        return self
 
     def configuration(self) -> Centerline:
         """One open strand, checked, at the resolution of the run."""
-        from torsade.protocols.driving import read_centerline
+        from torsade.protocols.shapes import check_built, read_centerline
 
-        return read_centerline(self.centerline, self, 1, "tighten pulls one strand by both its ends")
+        if self.knot is None:
+            return read_centerline(str(self.centerline), self, 1, "tighten pulls one strand by both its ends")
+        from torsade.knots.overhand import overhand
+
+        return check_built(overhand(self.h, spacing=self.node_spacing), self.h)
 
     def experiment(self, assembly: Assembly, state: State) -> Experiment:
         """Both ends pulled; their distance, the length, the greatest curvature and strain measured."""

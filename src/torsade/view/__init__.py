@@ -1,1 +1,34 @@
+"""Pictures and plots of a dataset; the libraries that draw are imported when something is drawn.
 
+>>> import torsade as ts
+>>> ts.view.plot_separation.__name__
+'plot_separation'
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from torsade.view.plots import plot_separation, plot_tightening
+    from torsade.view.scene import render, render_result
+
+__all__ = ["plot_separation", "plot_tightening", "render", "render_result"]
+
+_HOMES = {
+    "plot_separation": "torsade.view.plots",
+    "plot_tightening": "torsade.view.plots",
+    "render": "torsade.view.scene",
+    "render_result": "torsade.view.scene",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        return getattr(import_module(_HOMES[name]), name)
+    raise AttributeError(f"module 'torsade.view' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

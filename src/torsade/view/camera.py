@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
-from torsade.view.tube import Centerline
+from torsade.view.tube import SmoothCurve
 
 Floats = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ class View(NamedTuple):
         return np.asarray(0.5 * self.size[1] / self.half_height / (1.0 - nearness))
 
 
-def knot_body(curves: Sequence[Centerline], closed: Sequence[bool], radius: float) -> list[Floats]:
+def knot_body(curves: Sequence[SmoothCurve], closed: Sequence[bool], radius: float) -> list[Floats]:
     """Points (m, 3) of each strand from its first to its last contact; whole strands if nothing is close.
 
     Contact is looked for at 2.2 radii between centerlines, then further away, up to 10 radii, so
@@ -74,7 +74,7 @@ def knot_body(curves: Sequence[Centerline], closed: Sequence[bool], radius: floa
 
 
 def _contacts(
-    curves: Sequence[Centerline], closed: Sequence[bool], radius: float, reach: float
+    curves: Sequence[SmoothCurve], closed: Sequence[bool], radius: float, reach: float
 ) -> list[NDArray[np.int64]]:
     """Points of each strand that another strand, or the same strand much further on, comes close to."""
     x = np.concatenate([c.x for c in curves])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, reason_of
 from torsade.view._extra import require
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
+ENDINGS = (".png", ".pdf", ".svg")
 INK, CURVE, SLIP = "#262a2e", "#2f6fa8", "#b5475c"
 STYLE: dict[str, Any] = {
     "font.family": "sans-serif",
@@ -137,7 +138,8 @@ def _stack(dataset: xarray.Dataset, panels: list[tuple[str, Floats]]) -> tuple[A
 
 def _title(axis: Any, dataset: xarray.Dataset) -> None:
     """Name of the knot and its topological friction, as far as they are known."""
-    parts = [str(dataset.attrs["knot"])] if dataset.attrs.get("knot") else []
+    # A dollar sign would begin a formula.
+    parts = [str(dataset.attrs["knot"]).replace("$", r"\$")] if dataset.attrs.get("knot") else []
     friction = _number(dataset, "c_f")
     if friction is not None:
         parts.append(rf"$c_f$ = {friction:.3g}")
@@ -147,11 +149,13 @@ def _title(axis: Any, dataset: xarray.Dataset) -> None:
 
 def _save(figure: Any, path: str | Path) -> Path:
     path = Path(path)
+    if path.suffix.lower() not in ENDINGS:
+        raise TorsadeError(f"cannot plot to {str(path)!r}; give a name that ends in {' or '.join(ENDINGS)}")
     try:
         figure.savefig(path, dpi=300, facecolor="white")
-    except (OSError, ValueError) as error:
+    except OSError as error:
         raise TorsadeError(
-            f"the plot cannot be written to {path} ({error}); give a path in a folder that can be written, "
-            "ending in .png, .pdf or .svg."
+            f"the plot cannot be written to {path} ({reason_of(error)}); give a path in a folder that exists "
+            "and can be written."
         ) from error
     return path

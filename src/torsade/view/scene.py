@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, reason_of
 from torsade.view._extra import require
 from torsade.view.camera import (
     SAMPLE,
@@ -24,7 +24,7 @@ from torsade.view.camera import (
 from torsade.view.colours import strain_colour, strand_colour
 from torsade.view.overlay import Mark, draw_over
 from torsade.view.shading import LAMP, Pieces, lit, occlusion
-from torsade.view.tube import Centerline, Mesh, smooth_centerline, tube
+from torsade.view.tube import Mesh, SmoothCurve, smooth_centerline, tube
 
 if TYPE_CHECKING:
     import xarray
@@ -79,7 +79,7 @@ def render(
         require("matplotlib.image").imsave(path, pixels, dpi=300, format="png")
     except OSError as error:
         raise TorsadeError(
-            f"the picture cannot be written to {path} ({error.strerror or error}); give a path in a folder "
+            f"the picture cannot be written to {path} ({reason_of(error)}); give a path in a folder "
             "that exists and can be written."
         ) from error
     return path
@@ -171,7 +171,7 @@ def _checked(
 
 
 def _view(
-    curves: Sequence[Centerline],
+    curves: Sequence[SmoothCurve],
     loops: Sequence[bool],
     size: tuple[int, int],
     direction: ArrayLike | None,
@@ -192,7 +192,7 @@ def _view(
     return frame(body, 1.0, size, right, toward, fill)
 
 
-def _pieces(curves: Sequence[Centerline], loops: Sequence[bool]) -> Pieces:
+def _pieces(curves: Sequence[SmoothCurve], loops: Sequence[bool]) -> Pieces:
     """The strands as short pieces that cast shadows, one around each point of the sampled curves."""
     lengths = []
     for curve, loop in zip(curves, loops, strict=True):

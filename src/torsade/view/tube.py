@@ -54,7 +54,7 @@ class Mesh(NamedTuple):
         return np.asarray((1.0 - s) * v[before % len(v)] + s * v[(before + 1) % len(v)])
 
 
-class Centerline(NamedTuple):
+class SmoothCurve(NamedTuple):
     """A curve sampled more finely than its nodes: points (m, 3) [m], unit tangents (m, 3), node (m,)."""
 
     x: Floats
@@ -62,7 +62,7 @@ class Centerline(NamedTuple):
     node: Floats
 
 
-def smooth_centerline(x: ArrayLike, closed: bool, spacing: float) -> Centerline:
+def smooth_centerline(x: ArrayLike, closed: bool, spacing: float) -> SmoothCurve:
     """Smooth curve through the nodes x (n, 3) [m], sampled at most `spacing` [m] apart.
 
     A closed curve is sampled from node 0 up to, and without, node 0 again.
@@ -78,7 +78,7 @@ def smooth_centerline(x: ArrayLike, closed: bool, spacing: float) -> Centerline:
     if not closed:
         edge, s = np.append(edge, n - 2), np.append(s, 1.0)
     points, tangents = _hermite(x, slope, chord, edge, s)
-    return Centerline(points, tangents, edge + s)
+    return SmoothCurve(points, tangents, edge + s)
 
 
 def _distinct(x: Floats, closed: bool) -> Floats:
@@ -123,7 +123,7 @@ def _unit(v: Floats) -> Floats:
     return np.asarray(v / np.linalg.norm(v, axis=-1, keepdims=True))
 
 
-def minimal_frame(curve: Centerline, closed: bool) -> tuple[Floats, Floats]:
+def minimal_frame(curve: SmoothCurve, closed: bool) -> tuple[Floats, Floats]:
     """Two directors (m, 3) each, orthonormal to the tangents, that turn about them as little as possible.
 
     Directors are parallel transported from point to point. On a closed curve the angle left after one
@@ -213,7 +213,7 @@ def _wall(rings: int, sides: int, closed: bool) -> Ints:
     return np.stack([np.stack([a, b, c], axis=-1), np.stack([a, c, d], axis=-1)]).reshape(-1, 3)
 
 
-def _capped(curve: Centerline, out: Floats, radius: float, rounding: float) -> Mesh:
+def _capped(curve: SmoothCurve, out: Floats, radius: float, rounding: float) -> Mesh:
     """Tube of an open curve: rings (m, sides, 3) along it, a few more around each rounded edge, two poles."""
     sides = out.shape[1]
     edge = rounding * radius
