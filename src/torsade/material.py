@@ -16,7 +16,7 @@ from types import MappingProxyType
 
 from torsade.errors import TorsadeError
 
-__all__ = ["MATERIALS", "Material", "Preset", "Section", "material", "preset"]
+__all__ = ["MATERIALS", "Material", "Preset", "Section", "named_material", "preset"]
 
 
 @dataclass(frozen=True)
