@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from numba.core import event
 
 from torsade import _compile
 
@@ -47,6 +49,31 @@ def test_cache_goes_where_it_is_told(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("TORSADE_CACHE_DIR", str(tmp_path / "file"))
     assert _compile.cache_directory() is None
+
+
+def test_compilation_leaves_the_collector_as_it_was():
+    """Garbage is not collected while a kernel is compiled, and is again afterwards, or not if it was not."""
+    for collecting in (True, False):
+        seen = []
+
+        def kernel(x):
+            return x + 1
+
+        class Look(event.Listener):
+            def on_start(self, event, seen=seen):
+                seen.append(gc.isenabled())
+
+            def on_end(self, event, seen=seen):
+                seen.append(gc.isenabled())
+
+        (gc.enable if collecting else gc.disable)()
+        try:
+            with event.install_listener("numba:compile", Look()):
+                assert _compile.njit(kernel)(1) == 2
+            assert gc.isenabled() == collecting
+        finally:
+            gc.enable()
+        assert False in seen
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from torsade.errors import TorsadeError
-from torsade.material import MATERIALS, Material, Section, material, preset
+from torsade.material import MATERIALS, Material, Section, named_material, preset
 
 STEEL = Material(name="steel", E=2e11, E_b=2e11, nu=0.3, rho=7800.0, eta=1.0)
 
@@ -56,7 +56,7 @@ def test_section_scales_with_radius(h: float) -> None:
 def test_presets_are_the_thesis_numbers(
     name: str, E: float, E_b: float, rho: float, eta: float, twist_damping: float, h: float
 ) -> None:
-    m = material(name)
+    m = named_material(name)
     assert (m.name, m.E, m.E_b, m.nu, m.rho) == (name, E, E_b, 0.3, rho)
     assert (m.eta, m.twist_damping, preset(name).section.h) == (eta, twist_damping, h)
     assert "thesis" in m.source
@@ -64,7 +64,7 @@ def test_presets_are_the_thesis_numbers(
 
 def test_spaghetti_has_the_measured_shear_modulus_and_damping() -> None:
     """Thesis 3.2: mu = 1.5 ± 0.2 GPa measured; b = 1.3 pi c_theta/L at L = 24 cm, c_theta^2 = mu/rho."""
-    m = material("spaghetti")
+    m = named_material("spaghetti")
     assert m.mu == pytest.approx(1.5e9, abs=0.2e9)
     assert m.twist_damping == pytest.approx(1.3 * math.pi * math.sqrt(m.mu / m.rho) / 0.24, rel=2e-3)
 
@@ -97,17 +97,17 @@ def test_impossible_radius_is_refused(h: float) -> None:
 
 def test_unknown_material_names_the_nearest_and_all() -> None:
     with pytest.raises(TorsadeError, match=r"unknown material 'Nylno'; did you mean 'nylon'\?") as caught:
-        material("Nylno")
+        named_material("Nylno")
     assert all(name in str(caught.value) for name in MATERIALS)
     with pytest.raises(TorsadeError, match=r"unknown material 'xyz'; choose one of nylon"):
-        material("xyz")
+        named_material("xyz")
 
 
 def test_materials_cannot_be_changed_in_place() -> None:
     with pytest.raises(TypeError):
         MATERIALS["nylon"] = MATERIALS["silicone"]  # type: ignore[index]
     with pytest.raises(dataclasses.FrozenInstanceError):
-        material("nylon").E = 1.0  # type: ignore[misc]
+        named_material("nylon").E = 1.0  # type: ignore[misc]
 
 
 def test_units_and_materials_import_without_arrays() -> None:

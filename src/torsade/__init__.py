@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from torsade import curve, knots, protocols, topology, view
     from torsade.centerline import Centerline, read_csv, write_csv
     from torsade.errors import TorsadeError
-    from torsade.material import MATERIALS, Material, Section, material
+    from torsade.material import MATERIALS, Material, Section, named_material
     from torsade.results import Result
     from torsade.results import open_result as open
 
@@ -31,7 +31,7 @@ __all__ = [
     "__version__",
     "curve",
     "knots",
-    "material",
+    "named_material",
     "open",
     "protocols",
     "read_csv",
@@ -42,7 +42,7 @@ __all__ = [
 
 __version__ = "0.1.0"
 
-_MODULES = ("curve", "knots", "material", "protocols", "topology", "view")
+_MODULES = ("curve", "knots", "protocols", "topology", "view")
 _HOMES = {
     "MATERIALS": "torsade.material",
     "Centerline": "torsade.centerline",
@@ -50,6 +50,7 @@ _HOMES = {
     "Result": "torsade.results",
     "Section": "torsade.material",
     "TorsadeError": "torsade.errors",
+    "named_material": "torsade.material",
     "read_csv": "torsade.centerline",
     "write_csv": "torsade.centerline",
 }

@@ -8,6 +8,7 @@ of all kernel sources, and one changed line anywhere compiles everything anew.
 
 from __future__ import annotations
 
+import gc
 import hashlib
 import inspect
 import os
@@ -55,22 +56,26 @@ def cache_directory() -> Path | None:
 CACHE = cache_directory()
 
 
-class _QuickOptimisation(event.Listener):
-    """Compile kernels at LLVM level 1: a third less time to compile, and the same speed afterwards."""
+class _QuickCompilation(event.Listener):
+    """Compile kernels at LLVM level 1, a third less time and the same speed afterwards, and without garbage
+    collection, which finds nothing in what the compiler keeps and takes a tenth of the time."""
 
     def __init__(self) -> None:
-        self._saved: list[Any] = []
+        self._saved: list[tuple[Any, bool]] = []
 
     def on_start(self, event: event.Event) -> None:
-        self._saved.append(config.OPT)
+        self._saved.append((config.OPT, gc.isenabled()))
+        gc.disable()
         if event.data["dispatcher"].py_func.__module__.startswith("torsade."):
             config.OPT = type(config.OPT)(1)
 
     def on_end(self, event: event.Event) -> None:
-        config.OPT = self._saved.pop()
+        config.OPT, collecting = self._saved.pop()
+        if collecting:
+            gc.enable()
 
 
-register("numba:compile", _QuickOptimisation())
+register("numba:compile", _QuickCompilation())
 
 
 class Kernel:

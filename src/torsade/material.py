@@ -1,6 +1,6 @@
 """What a fiber is made of and how thick it is: `Material`, circular `Section`, and named presets.
 
->>> nylon = material("nylon")
+>>> nylon = named_material("nylon")
 >>> round(nylon.mu / 1e6, 3)
 38.462
 >>> Section(h=2e-4).J == 2 * Section(h=2e-4).I
@@ -10,14 +10,13 @@ True
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType, ModuleType
+from types import MappingProxyType
 
 from torsade.errors import TorsadeError
 
-__all__ = ["MATERIALS", "Material", "Preset", "Section", "material", "preset"]
+__all__ = ["MATERIALS", "Material", "Preset", "Section", "named_material", "preset"]
 
 
 @dataclass(frozen=True)
@@ -184,16 +183,6 @@ def preset(name: str) -> Preset:
     raise TorsadeError(f"unknown material {name!r}; {hint}choose one of {', '.join(sorted(MATERIALS))}")
 
 
-def material(name: str) -> Material:
+def named_material(name: str) -> Material:
     """Return the named material; see `preset`."""
     return preset(name).material
-
-
-class _Named(ModuleType):
-    """Lets `torsade.material("nylon")` be the function: the import system gives that name to this module."""
-
-    def __call__(self, name: str) -> Material:
-        return material(name)
-
-
-sys.modules[__name__].__class__ = _Named

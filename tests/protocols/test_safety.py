@@ -228,8 +228,8 @@ def test_names_that_mean_something_else_now_are_not_mixed(part: Path) -> None:
         SPEC.run(out=part.with_suffix(""), resume=True)
 
 
-def test_the_time_of_a_looks_at_ctrl_c_is_short() -> None:
-    """A second Ctrl-C ends at once, the first is told of and obeyed between two steps."""
+def test_the_first_ctrl_c_waits_and_the_second_does_not() -> None:
+    """The first is told of and obeyed between two steps."""
     from torsade.protocols.patience import Patience
 
     told = []
@@ -281,5 +281,5 @@ def test_without_a_cache_it_is_not_said_that_compiling_is_done_once(monkeypatch:
     said = []
     SPEC.run(lambda share, note: said.append(note))
     assert said[0] == (
-        "compiling the kernels (about a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
+        "compiling the kernels (about half a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
     )

@@ -15,7 +15,7 @@ from torsade.motion.rates import Work, energies, forces
 from torsade.motion.scheme import Control
 from torsade.rod.contact import Contacts, Model, compression, contacts_among, list_contacts
 from torsade.rod.kinematics import edge_geometry
-from torsade.rod.neighbours import edge_midpoints, near_points, near_rows, without_excluded
+from torsade.rod.neighbours import NEXT, edge_midpoints, near_points, near_rows, without_excluded
 
 
 class Near(NamedTuple):
@@ -47,7 +47,7 @@ def find_near(a: Assembly, m: Model, control: Control, mid: Floats, length: Floa
     touching = m.diameter + control.skin + 2.0 * control.roam
     crossing = _guard_reach(length, control, control.move) + 2.0 * control.roam
     found = near_points(mid, max(touching, crossing))
-    apart = without_excluded(a, found, mid, crossing, 1, 0.0)
+    apart = without_excluded(a, found, mid, crossing, NEXT, 0.0)
     pairs = without_excluded(a, found, mid, touching, m.exclusion_edges, m.exclusion_length)
     near = Near(apart, np.empty(apart.shape[0], np.int64), contacts_among(pairs), np.empty(1, np.int64))
     list_near(m, control, mid, length, near)
@@ -77,7 +77,7 @@ def crossing(
     pairs, rows, count = near.apart, near.guarded, near.count[0]
     if move > control.move:
         reach = _guard_reach(length, control, move)
-        pairs = without_excluded(a, near_points(mid, reach), mid, reach, 1, 0.0)
+        pairs = without_excluded(a, near_points(mid, reach), mid, reach, NEXT, 0.0)
         rows = np.empty(pairs.shape[0], np.int64)
         count = near_rows(pairs, mid, reach, rows)
     k = first_crossing(a, pairs, rows, count, x0, x1, length, mid)

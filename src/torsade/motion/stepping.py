@@ -53,8 +53,13 @@ class Clock(NamedTuple):
     culprit: Ints
 
 
-def _commit(a: Assembly, state: State, g: Stages) -> None:
-    """Accept g.x, g.theta: carry directors and reference twist along."""
+def _commit(a: Assembly, state: State, g: Stages, now: float, clock: Clock) -> None:
+    """Accept g.x, g.theta at the time now [s]: carry directors and reference twist along."""
+    clock.time[0] = now
+    clock.time[2] += g.ledger[0, 0]
+    clock.time[3] += g.ledger[0, 1]
+    clock.count[0] += 1
+    clock.count[4] += 1
     carry_directors(a.edge_start, state.director, g.tangent, g.work.tangent)
     copy_flat(g.work.change, state.reference_twist)
     copy(g.work.tangent, g.tangent)
@@ -85,11 +90,19 @@ def _find_near(a: Assembly, m: Model, control: Control, state: State, g: Stages,
 
 def _take_spectrum(g: Stages, clock: Clock) -> None:
     """Note the spectral radius just estimated, and choose a first step from it."""
-    clock.count[2] += int(g.estimate[1])
     clock.time[4] = max(1.1 * g.estimate[0], 1e-300)
     clock.count[4] = 0
     if clock.time[1] <= 0.0:
         clock.time[1] = 1.0 / clock.time[4]
+
+
+def _next_job(control: Control, clock: Clock, begin: bool, again: bool) -> Index:
+    """What to evaluate: the rates to begin with, now and then the spectral radius, else a step."""
+    if begin:
+        return START
+    if control.fixed_step > 0.0 or again:
+        return STEP
+    return SPECTRUM if clock.count[4] >= STEPS_PER_SPECTRUM or clock.time[4] == 0.0 else STEP
 
 
 def _next_step(control: Control, clock: Clock, until: float) -> tuple[float, bool]:
@@ -173,42 +186,34 @@ def advance(
     near = _find_near(a, m, control, state, g, clock)
     unmade = factor
     adaptive = control.fixed_step == 0.0
-    job, begin, again = START, True, False
+    begin, again = True, False
     verdict = PAUSED
     left = max_steps
     stages: Index = ONE_STAGE
     tried, dt, last = 0.0, 0.0, False
     while verdict == PAUSED:
-        if begin:
-            job = START
-        elif until - clock.time[0] <= 1e-12 * until:
+        job = _next_job(control, clock, begin, again)
+        if job != START and until - clock.time[0] <= 1e-12 * until:
             clock.time[0] = until
             verdict = REACHED
             break
-        elif left == 0:
+        if job != START and left == 0:
             break
-        elif adaptive and not again and (clock.count[4] >= STEPS_PER_SPECTRUM or clock.time[4] == 0.0):
-            job = SPECTRUM
-        else:
-            job = STEP
+        if job == STEP:
             tried, last = _next_step(control, clock, until)
             stages, dt = stages_for(tried, clock.time[4]) if adaptive else (ONE_STAGE, tried)
         status, factor = evaluate(job, a, m, bc, state, near.contacts, factor, control, dt, stages, g)
+        clock.count[2] += int(g.estimate[1])
+        if status == DENSE or (job == START and status != OK):
+            verdict = _verdict(status)
+            break
         if job == START:
-            clock.count[2] += 1
-            if status != OK:
-                verdict = _verdict(status)
-                break
             _take_rates(state, g)
             begin = False
             continue
-        if status == DENSE:
-            verdict = CROWDED
-            break
         if job == SPECTRUM:
             _take_spectrum(g, clock)
             continue
-        clock.count[2] += stages
         ratio, judged = _judge(a, state, near, control, status, dt, g, clock)
         if judged != REACHED:
             clock.count[1] += 1
@@ -217,25 +222,19 @@ def advance(
             if not adaptive or not dt > 1e-13 * (clock.time[0] + dt):
                 verdict = judged
             continue
-        clock.time[0] = until if last and dt == tried else clock.time[0] + dt
-        clock.count[0] += 1
-        clock.count[4] += 1
-        left -= 1
         if adaptive:
             _adapt(tried, dt, ratio, 1.0 if again else 2.0, clock)
+        _commit(a, state, g, until if last and dt == tried else clock.time[0] + dt, clock)
+        left -= 1
         again = False
-        clock.time[2] += g.ledger[0, 0]
-        clock.time[3] += g.ledger[0, 1]
-        _commit(a, state, g)
         moved = largest_move(g.listed, state.x)
         begin = moved > 0.5 * control.skin  # a fixed step that outran the list: find contacts again
-        if moved > 0.25 * control.skin:
-            if largest_move(g.searched, state.x) > control.roam:
-                near = _find_near(a, m, control, state, g, clock)
-                factor = unmade
-            else:
-                copy(state.x, g.listed)
-                list_near(m, control, g.mid, g.length, near)
+        if largest_move(g.searched, state.x) > control.roam:
+            near = _find_near(a, m, control, state, g, clock)
+            factor = unmade
+        elif moved > 0.25 * control.skin:
+            copy(state.x, g.listed)
+            list_near(m, control, g.mid, g.length, near)
     spread_directors(a.hinges, g.tangent, state.reference_twist, state.director)
     return verdict
 

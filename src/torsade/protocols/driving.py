@@ -153,9 +153,11 @@ def _warm_up(motion: Motion) -> None:
 def _preparation() -> str:
     """What there is to do before the first step."""
     if _compile.CACHE is None:
-        return "compiling the kernels (about a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
+        return (
+            "compiling the kernels (about half a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
+        )
     kept = any(_compile.CACHE.rglob("*.nbc"))
-    return "getting ready" if kept else "compiling the kernels, this once (about a minute)"
+    return "getting ready" if kept else "compiling the kernels, this once (about half a minute)"
 
 
 class _Clock:

@@ -14,6 +14,10 @@ from torsade._compile import compile_kernels
 from torsade.arrays import Floats, Index, Ints
 from torsade.assembly import Assembly
 
+NONE = np.int64(0)
+NEXT = np.int64(1)
+"""Not literals: a kernel is compiled again for every literal that it is called with."""
+
 
 def edge_midpoints(x: Floats, edges: Ints, mid: Floats) -> None:
     """Midpoints (n_edges, 3) [m] of all edges."""
@@ -67,7 +71,7 @@ def near_points(mid: Floats, cutoff: float) -> Ints:
     _hash_cells(mid, cutoff, head, following, cell)
     reach = cutoff * cutoff
     pairs = np.empty((max(64, 8 * n), 2), np.int64)
-    total = 0
+    total = NONE
     for e in range(n):
         x, y, z = mid[e, 0], mid[e, 1], mid[e, 2]
         ci, cj, ck = cell[e, 0], cell[e, 1], cell[e, 2]
@@ -87,24 +91,24 @@ def near_points(mid: Floats, cutoff: float) -> Ints:
                                 pairs[total, 1] = f
                                 total += 1
                         f = following[f]
-    return _first(total, pairs, 0)
+    return _first(total, pairs, total)
 
 
 def neighbour_pairs(
-    a: Assembly, mid: Floats, cutoff: float, exclusion_edges: int, exclusion_length: float
+    a: Assembly, mid: Floats, cutoff: float, exclusion_edges: Index, exclusion_length: float
 ) -> Ints:
     """All pairs e < f of edges with midpoints nearer than cutoff [m], excluded ones left out."""
     return without_excluded(a, near_points(mid, cutoff), mid, cutoff, exclusion_edges, exclusion_length)
 
 
 def without_excluded(
-    a: Assembly, pairs: Ints, mid: Floats, cutoff: float, exclusion_edges: int, exclusion_length: float
+    a: Assembly, pairs: Ints, mid: Floats, cutoff: float, exclusion_edges: Index, exclusion_length: float
 ) -> Ints:
     """The pairs (n_pairs, 2) with midpoints nearer than cutoff [m] that are not excluded."""
     edge_fiber, edge_start, closed = a.edge_fiber, a.edge_start, a.closed
     arclength, fiber_length = a.edge_arclength, a.fiber_length
     kept = np.empty((pairs.shape[0], 2), np.int64)
-    count = 0
+    count = NONE
     for k in range(pairs.shape[0]):
         e = pairs[k, 0]
         f = pairs[k, 1]
@@ -124,7 +128,7 @@ def without_excluded(
             kept[count, 0] = e
             kept[count, 1] = f
             count += 1
-    return _first(count, kept, 0)
+    return _first(count, kept, count)
 
 
 def near_rows(pairs: Ints, mid: Floats, reach: float, rows: Ints) -> int:

@@ -14,6 +14,7 @@ import numpy as np
 from torsade._compile import compile_kernels
 from torsade.arrays import Bools, Floats, Index, Ints
 from torsade.assembly import Assembly
+from torsade.rod.neighbours import NONE
 
 
 class Elimination(NamedTuple):
@@ -30,7 +31,7 @@ class Elimination(NamedTuple):
     work: Floats
 
 
-def _filled(n: Index, value: int) -> Ints:
+def _filled(n: Index, value: Index) -> Ints:
     """n times the same number."""
     out = np.empty(n, np.int64)
     for i in range(n):
@@ -46,7 +47,7 @@ def couplings(a: Assembly, pairs: Ints, chosen: Bools) -> tuple[Ints, Ints]:
     """
     edges = a.edges
     n = a.node_length.shape[0]
-    offset = _filled(n + 1, 0)
+    offset = _filled(n + 1, NONE)
     for e in range(edges.shape[0]):
         offset[edges[e, 0] + 1] += 1
         offset[edges[e, 1] + 1] += 1
@@ -144,10 +145,10 @@ def minimum_degree(offset: Ints, neighbour: Ints, most: float) -> Elimination:
     """Eliminate nodes coupled as in `couplings`, fewest neighbours first; give up beyond work `most`."""
     n = offset.shape[0] - 1
     order, begin, size = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
-    mark = _filled(n, -1)
+    mark = _filled(n, NONE - 1)
     pool = np.empty(2 * neighbour.shape[0] + 64 * n, np.int64)
     end = _distinct(offset, neighbour, mark, begin, size, pool)
-    head, tail = _filled(n + 1, -1), _filled(n + 1, -1)
+    head, tail = _filled(n + 1, NONE - 1), _filled(n + 1, NONE - 1)
     following, previous = np.empty(n, np.int64), np.empty(n, np.int64)
     for i in range(n):
         _link(i, size[i], head, tail, following, previous)
