@@ -19,6 +19,7 @@ from torsade.topology.codes import (
     from_dt,
     from_gauss,
     from_pd,
+    to_braid,
     to_dt,
     to_gauss,
     to_open_pd,
@@ -61,7 +62,11 @@ def test_codes_of_closed_knots(name: str) -> None:
         assert any(is_isomorphic(pd, d, unoriented=True) for d in mirrors(dt))
     for p in (3, 5, 7):
         assert colourings(pd, p) == colourings(dt, p) == colourings(gauss, p) == colourings(braid, p)
-    assert determinant(pd) == determinant(dt) == determinant(braid)
+    word = to_braid(pd)
+    assert max(map(abs, word)) + 1 == len(pd.seifert_circles)
+    assert is_isomorphic(from_braid(to_braid(braid)), braid)
+    assert determinant(pd) == determinant(dt) == determinant(braid) == determinant(from_braid(word))
+    assert signature(from_braid(word)) == signature(pd)
     assert signature(pd) == signature(braid) == int(entry["signature"])
     assert abs(signature(dt)) == abs(signature(gauss)) == abs(signature(pd))
     assert pd.is_alternating == (entry["alternating"] == "Y")
@@ -222,7 +227,8 @@ def test_conventions() -> None:
 
 def test_circles_in_codes() -> None:
     assert from_pd([]) == from_gauss("") == Diagram.circle()
-    assert to_pd(Diagram.circle()) == []
+    assert to_pd(Diagram.circle()) == to_braid(Diagram.circle()) == []
+    assert to_braid(from_gauss("O1- U1-")) == [-1]
     assert from_braid([], 3).circles == 3
     assert from_braid([1], 3).circles == 1
     assert from_gauss("O1+ U1+ | ").circles == 1
@@ -245,6 +251,17 @@ def test_separate_pieces_of_a_tangle_follow_one_another() -> None:
     nested = from_gauss("O1+ U1+ | O2+ U2+", closed=False, boundary=["A0", "B0", "B1", "A1"])
     assert nested.genus == 0
     assert canonical_form(nested) != canonical_form(d)
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.sampled_from([[1, 1, 1], [1, -2, 1, -2], [1, 1], [1, -2, 1, -2, 1, -2]]), st.integers(0, 10**6))
+def test_every_drawing_is_a_closed_braid(word: list[int], seed: int) -> None:
+    d = scrambled(from_braid(word), 14, random.Random(seed))
+    closed = from_braid(to_braid(d))
+    assert closed.n_strands == d.n_strands
+    assert len(closed.seifert_circles) == len(d.seifert_circles)
+    assert (determinant(closed), signature(closed)) == (determinant(d), signature(d))
+    assert sorted(closed.linking.ravel()) == sorted(d.linking.ravel())
 
 
 # --- refusals
@@ -300,3 +317,5 @@ def test_bad_options_are_refused() -> None:
         to_dt(from_gauss("O1+ U1+", closed=False))
     with pytest.raises(TorsadeError, match="no DT code shows"):
         to_dt(from_braid([1], 3))
+    with pytest.raises(TorsadeError, match="a braid word is of a connected closed diagram"):
+        to_braid(from_braid([1], 3))
