@@ -26,6 +26,7 @@ from torsade.topology.codes import (
     to_pd,
     to_unsigned_gauss,
 )
+from torsade.topology.seifert import turning
 
 CLOSED = table("closed.json")
 BENDS = table("bends.json")
@@ -122,6 +123,7 @@ def test_pulled_bends(name: str) -> None:
         p = d.pulled(pulled)
         assert (p.n_crossings, p.writhe) == (state["N"], state["Wr"])
         assert len(p.seifert_circles) == state["seifert_loops"]
+        assert sum(turning(p, loop) for loop in p.seifert_circles) == state["Whitney"]
         own = [s for s, (i, j) in zip(p.signs, p.strands_at, strict=True) if i == j]
         assert (len(own), sum(own)) == (state["N_self"], state["Wr_self"])
         faces = [f for f in range(len(p.faces)) if p.is_bounded(f)]

@@ -174,16 +174,21 @@ def test_unknots_and_unlinks_fall_apart() -> None:
     assert (small.n_crossings, small.circles) == (0, 3)
 
 
-def test_hard_unknots() -> None:
-    """Drawings without a move that reduces crossings at once.
+twists = st.lists(st.integers(1, 4), min_size=2, max_size=5)
 
-    Goeritz's unknot of 11 crossings and the Culprit of Kauffman and Lambropoulou, Hard unknots and
-    collapsing tangles (2006), as closures of the tangles there: N(1/p + 1/q) with fractions that cancel.
+
+@settings(deadline=None, max_examples=200)
+@given(twists, st.data())
+def test_hard_unknots(one: list[int], data: st.DataObject) -> None:
+    """N(p/q - r/s) with |p s - q r| = 1 is the unknot; many of these drawings have no move that simplifies.
+
+    Kauffman, Lambropoulou, Hard unknots and collapsing tangles (2006). The other fraction is that of
+    `one` without its first twist, or with it shared out.
     """
-    for one, other in (((3, 2), (-2, -2, -1)), ((2, 1, 2), (-1, -1, -2)), ((4, 1), (-1, -3, -1))):
-        d = numerator(rational(*one) + rational(*other))
-        if determinant(d) == 1 and d.n_strands == 1:
-            assert simplify(d).n_crossings == 0
+    other = data.draw(st.sampled_from([[*one[1:]], [one[0] + 1, *one[1:]], [1, one[0], *one[1:]]]))
+    d = numerator(rational(*one) + -rational(*other))
+    assert determinant(d) == 1
+    assert simplify(d).n_crossings == 0
 
 
 def test_a_drawing_that_hangs_on_one_crossing_is_turned_over() -> None:

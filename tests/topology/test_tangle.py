@@ -24,6 +24,7 @@ from torsade.topology.tangle import (
     numerator,
     rational,
     rotated,
+    split,
     summands,
 )
 
@@ -159,7 +160,15 @@ def test_cutting_and_connecting() -> None:
     assert is_isomorphic(parts[1], trefoil)
     many = trefoil @ eight @ trefoil.mirror() | eight | Diagram.circle()
     assert [d.n_crossings for d in summands(many)] == [4, 4, 3, 3, 0]
+    assert [d.n_crossings for d in split(many)] == [10, 4, 0]
     assert (trefoil @ Diagram.circle()).n_crossings == 3
+    for hopf in (
+        from_gauss("O1+ U2+ | U1+ O2+"),
+        from_gauss("O1- U2- | U1- O2-"),
+        from_braid([1, 1]).reverse([1]),
+    ):
+        for both in (hopf @ trefoil, trefoil @ hopf):
+            assert sorted(part.writhe for part in summands(both)) == sorted([hopf.writhe, 3])
     assert (Diagram.circle() @ Diagram.circle()) == Diagram.circle()
 
 

@@ -8,6 +8,7 @@
 | `tangle` | sums, products, closures, cuts, connected sums and summands |
 | `moves`, `simplify` | Reidemeister moves one by one; fewer crossings by pass moves |
 | `canonical` | when two drawings are the same |
+| `seifert` | which way Seifert circles run |
 | `draft` | the workbench on which diagrams are changed |
 """
 

@@ -33,6 +33,7 @@ __all__ = [
     "numerator",
     "rational",
     "rotated",
+    "split",
     "summands",
     "union",
 ]
@@ -190,16 +191,22 @@ def connected_sum(a: Diagram, b: Diagram, edges: tuple[int, int] = (0, 0)) -> Di
     return _glued(halves, [(1, 2), (3, 0)], [])
 
 
+def split(diagram: Diagram) -> tuple[Diagram, ...]:
+    """The split components of a closed diagram that show: its connected pieces, then its circles."""
+    if diagram.ends:
+        raise TorsadeError(f"the diagram has ends {' '.join(diagram.ends)}; close it first")
+    pieces = [_part(diagram, piece) for piece in diagram.pieces]
+    return (*pieces, *[Diagram.circle()] * diagram.circles)
+
+
 def summands(diagram: Diagram) -> tuple[Diagram, ...]:
     """The parts of a closed diagram: its split components, cut into what connected sums show in the drawing.
 
     Circles that cross two edges only are cut along, so each part has no such circle. The parts of a
     drawing of a composite knot need not show: `simplify` first, for what is prime is then seldom hidden.
     """
-    if diagram.ends:
-        raise TorsadeError(f"the diagram has ends {' '.join(diagram.ends)}; close it first")
-    parts: list[Diagram] = [Diagram.circle()] * diagram.circles
-    todo = [_part(diagram, piece) for piece in diagram.pieces]
+    parts: list[Diagram] = []
+    todo = list(split(diagram))
     while todo:
         d = todo.pop()
         shared: dict[frozenset[int], tuple[int, int]] = {}
@@ -209,7 +216,7 @@ def summands(diagram: Diagram) -> tuple[Diagram, ...]:
                 first, end = shared[sides]
                 mate = list(d.mate)
                 mate[first], mate[head], mate[tail], mate[end] = head, first, end, tail
-                both = Diagram.assemble(mate, [first, tail])
+                both = Diagram.assemble(mate, [first, tail, *d.starts])
                 todo += [_part(both, piece) for piece in both.pieces]
                 break
             shared[sides] = tail, head
