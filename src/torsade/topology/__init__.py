@@ -10,6 +10,7 @@
 | `tangle` | sums, products, closures, cuts, connected sums and summands |
 | `moves`, `simplify` | Reidemeister moves one by one; fewer crossings by pass moves |
 | `canonical` | when two drawings are the same |
+| `seifert` | which way Seifert circles run |
 | `draft` | the workbench on which diagrams are changed |
 | `invariants`, `identify` | polynomials and numbers; which knot or link it is |
 | `counting` | the thesis's rules for a pulled knot: N, tau, Gamma |

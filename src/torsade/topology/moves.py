@@ -85,7 +85,8 @@ def add_kink(diagram: Diagram, dart: int, sign: int, left: bool = True) -> Diagr
         draft.starts[draft.starts.index(CIRCLE)] = side ^ 2
         draft.join(into, side ^ 2)
     else:
-        far = _known(diagram, dart) and diagram.mate[dart]
+        _check_port(diagram, dart)
+        far = diagram.mate[dart]
         draft.join(dart, into)
         draft.join(side ^ 2, far)
     draft.join(out, side)
@@ -150,9 +151,8 @@ def slide_triangle(diagram: Diagram, dart: int) -> Diagram:
     return draft.freeze()
 
 
-def _known(diagram: Diagram, dart: int) -> bool:
+def _check_port(diagram: Diagram, dart: int) -> None:
     if dart not in diagram.ports:
         raise TorsadeError(
             f"there is no port {dart}; give one from {diagram.ports[0]} to {diagram.ports[-1]}"
         )
-    return True

@@ -35,9 +35,8 @@ def simplify(diagram: Diagram, patience: int = 100, seed: int = 0) -> Diagram:
         seed: of the choice of those moves.
 
     >>> from torsade.topology.codes import from_braid
-    >>> simpler = simplify(from_braid([1, -2, 1, 2, -2, 1, 2]))
-    >>> simpler.n_crossings, simpler.n_strands
-    (3, 1)
+    >>> simplify(from_braid([1, 1, 2, 1, -2, -1, 1, -2]))
+    <Diagram: 0 crossings, 1 strand>
     """
     draft = Draft(diagram)
     chance = random.Random(seed)

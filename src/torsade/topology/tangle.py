@@ -16,6 +16,7 @@ those of the first summand that it meets.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
 from torsade.errors import TorsadeError
 from torsade.topology.diagram import CIRCLE, Diagram
@@ -32,6 +33,7 @@ __all__ = [
     "numerator",
     "rational",
     "rotated",
+    "split",
     "summands",
     "union",
 ]
@@ -75,7 +77,7 @@ def rotated(tangle: Diagram, quarters: int = 1) -> Diagram:
     ends = mate[len(mate) - m :]
     mate[len(mate) - m :] = ends[k:] + ends[:k]
     starts = [s if s >= 0 else (s - k) % m - m for s in tangle.starts]
-    return Diagram.assemble(mate, starts, tangle.ends[k:] + tangle.ends[:k])
+    return Diagram.assemble(mate, starts, tangle.ends[k:] + tangle.ends[:k], outer=tangle.outer)
 
 
 def add(a: Diagram, b: Diagram) -> Diagram:
@@ -93,12 +95,12 @@ def multiply(a: Diagram, b: Diagram) -> Diagram:
 
 def numerator(tangle: Diagram) -> Diagram:
     """The closure of a tangle with four ends that joins NW to NE and SW to SE."""
-    return _glued([_four(tangle)], [(0, 1), (2, 3)], [])
+    return _closed(_four(tangle), [(0, 1), (2, 3)])
 
 
 def denominator(tangle: Diagram) -> Diagram:
     """The closure of a tangle with four ends that joins NW to SW and NE to SE."""
-    return _glued([_four(tangle)], [(1, 2), (3, 0)], [])
+    return _closed(_four(tangle), [(1, 2), (0, 3)])
 
 
 def close(tangle: Diagram, joins: Iterable[tuple[str, str]]) -> Diagram:
@@ -109,7 +111,7 @@ def close(tangle: Diagram, joins: Iterable[tuple[str, str]]) -> Diagram:
         raise TorsadeError(
             f"joins {pairs} do not join all ends; give each of {' '.join(place)} once, in pairs"
         )
-    known = [tuple(sorted((place[p], place[q]))) for p, q in pairs]
+    known = [(min(place[p], place[q]), max(place[p], place[q])) for p, q in pairs]
     for p, q in known:
         for r, s in known:
             if p < r < q < s:
@@ -117,7 +119,21 @@ def close(tangle: Diagram, joins: Iterable[tuple[str, str]]) -> Diagram:
                     f"joins {pairs} cross outside the circle, where the ends are {' '.join(tangle.ends)}; "
                     "choose one of `closures`"
                 )
-    return _glued([tangle], [(p, q) for p, q in known], [])
+    return _closed(tangle, known)
+
+
+def _closed(tangle: Diagram, joins: Sequence[tuple[int, int]]) -> Diagram:
+    """The closure that joins ends p < q, counted around; outside is what lies open to most gaps of ends."""
+    m = len(tangle.ends)
+    above = [frozenset(k for k, (p, q) in enumerate(joins) if p <= gap < q) for gap in range(m)]
+    gap = max(range(m), key=lambda g: above.count(above[g]))
+    # The gap is on the left of the edge that comes in at the next end, and so of the one joined to it.
+    end = (gap + 1) % m
+    partner = next(q if p == end else p for p, q in joins if end in (p, q))
+    dart = tangle.mate[partner - m]
+    outer = [dart] if dart >= 0 else []
+    opened = replace(tangle, outer=(*outer, *tangle.outer))
+    return _glued([opened], joins, [])
 
 
 def closures(tangle: Diagram) -> Iterator[tuple[tuple[tuple[str, str], ...], Diagram]]:
@@ -175,16 +191,22 @@ def connected_sum(a: Diagram, b: Diagram, edges: tuple[int, int] = (0, 0)) -> Di
     return _glued(halves, [(1, 2), (3, 0)], [])
 
 
+def split(diagram: Diagram) -> tuple[Diagram, ...]:
+    """The split components of a closed diagram that show: its connected pieces, then its circles."""
+    if diagram.ends:
+        raise TorsadeError(f"the diagram has ends {' '.join(diagram.ends)}; close it first")
+    pieces = [_part(diagram, piece) for piece in diagram.pieces]
+    return (*pieces, *[Diagram.circle()] * diagram.circles)
+
+
 def summands(diagram: Diagram) -> tuple[Diagram, ...]:
     """The parts of a closed diagram: its split components, cut into what connected sums show in the drawing.
 
     Circles that cross two edges only are cut along, so each part has no such circle. The parts of a
     drawing of a composite knot need not show: `simplify` first, for what is prime is then seldom hidden.
     """
-    if diagram.ends:
-        raise TorsadeError(f"the diagram has ends {' '.join(diagram.ends)}; close it first")
-    parts: list[Diagram] = [Diagram.circle()] * diagram.circles
-    todo = [_part(diagram, piece) for piece in diagram.pieces]
+    parts: list[Diagram] = []
+    todo = list(split(diagram))
     while todo:
         d = todo.pop()
         shared: dict[frozenset[int], tuple[int, int]] = {}
@@ -194,7 +216,7 @@ def summands(diagram: Diagram) -> tuple[Diagram, ...]:
                 first, end = shared[sides]
                 mate = list(d.mate)
                 mate[first], mate[head], mate[tail], mate[end] = head, first, end, tail
-                both = Diagram.assemble(mate, [first, tail])
+                both = Diagram.assemble(mate, [first, tail, *d.starts])
                 todo += [_part(both, piece) for piece in both.pieces]
                 break
             shared[sides] = tail, head
@@ -241,13 +263,15 @@ def _glued(tangles: Sequence[Diagram], joins: Iterable[tuple[int, int]], left: S
         crossing, end = crossing + 4 * t.n_crossings, end + m
     mate += tips
     starts = [name[s] for t, name in zip(tangles, new, strict=True) for s in t.starts]
-    outer = [name[p] for t, name in zip(tangles, new, strict=True) for p in t.outer]
+    outer = [name[p] for t, name in zip(tangles, new, strict=True) for p in t.outer if p >= 0]
     for p, q in joins:
         p, q = p + n, q + n
         before, after = mate[p], mate[q]
         # A strand that began at a joined end begins where it now comes from.
         if before == q:
-            starts = [CIRCLE if s in (p, q) else s for s in starts]
+            mine = [k for k, s in enumerate(starts) if s in (p, q)]
+            starts[mine[0]] = CIRCLE
+            starts = [s for k, s in enumerate(starts) if k not in mine[1:]]
             continue
         starts = [after if s == p else before if s == q else s for s in starts]
         mate[before], mate[after] = after, before

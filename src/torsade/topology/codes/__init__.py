@@ -5,12 +5,12 @@
 | PD | `from_pd` | `to_pd`, and `to_open_pd` for tangles |
 | Gauss, signed or not | `from_gauss` | `to_gauss`, `to_unsigned_gauss` |
 | Dowker-Thistlethwaite | `from_dt` | `to_dt` |
-| braid word | `from_braid` | |
+| braid word | `from_braid` | `to_braid` |
 | Conway notation | `from_conway` | |
 | any of these as text | `from_text` | |
 """
 
-from torsade.topology.codes.braid import from_braid
+from torsade.topology.codes.braid import from_braid, to_braid
 from torsade.topology.codes.conway import from_conway
 from torsade.topology.codes.dowker import from_dt, to_dt
 from torsade.topology.codes.gauss import from_gauss, to_gauss, to_unsigned_gauss
@@ -25,6 +25,7 @@ __all__ = [
     "from_gauss",
     "from_pd",
     "from_text",
+    "to_braid",
     "to_dt",
     "to_gauss",
     "to_open_pd",

@@ -137,8 +137,8 @@ class _Parser:
             return integer(int(self.take()))
         if self.word != "(":
             raise TorsadeError(
-                f"the Conway code {self.code!r} has {self.word or 'its end'!r} where a tangle is due; "
-                "give numbers, sums such as '3;2' and products such as '(3;2)21'"
+                f"the Conway code {self.code!r} has {repr(self.word) if self.word else 'its end'} where a "
+                "tangle is due; give numbers, sums such as '3;2' and products such as '(3;2)21'"
             )
         self.take()
         inside = self.sum()

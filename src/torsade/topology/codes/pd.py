@@ -14,7 +14,7 @@ from torsade.topology.codes._planar import drawn
 from torsade.topology.diagram import CIRCLE, Diagram, strand_name
 from torsade.topology.moves import add_kink
 
-__all__ = ["from_pd", "to_pd"]
+__all__ = ["from_pd", "to_open_pd", "to_pd"]
 
 Label = int | str
 

@@ -1,0 +1,68 @@
+"""Where the reference data are, and random diagrams."""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from torsade.topology import Diagram, moves
+
+SHARED = Path(os.environ.get("TORSADE_SHARED", Path(__file__).resolve().parents[3] / "shared"))
+KNOTS = SHARED / "data" / "knots"
+needs_knots = pytest.mark.skipif(not KNOTS.is_dir(), reason="the reference knots are not here")
+
+
+def table(name: str) -> Any:
+    """A file of reference knots; empty where it is absent."""
+    path = KNOTS / name
+    return json.loads(path.read_text()) if path.is_file() else {}
+
+
+def braid_word(entry: dict[str, Any]) -> list[int]:
+    """The braid of a closed knot; one entry of the table gives two."""
+    word = entry["braid"]
+    return word if isinstance(word[0], int) else word[0]
+
+
+def random_move(diagram: Diagram, rng: random.Random) -> tuple[str, Diagram]:
+    """A random Reidemeister move and its name; growing and shrinking are about as likely."""
+    made = [
+        (
+            "R1",
+            [
+                lambda: moves.add_kink(
+                    diagram, rng.choice(diagram.ports), rng.choice((1, -1)), rng.random() < 0.5
+                )
+            ],
+        ),
+        ("R1", [lambda p=p: moves.remove_kink(diagram, p) for p in moves.kinks(diagram)]),
+        (
+            "R2",
+            [lambda p=p: moves.add_bigon(diagram, *p, rng.random() < 0.5) for p in moves.fingers(diagram)],
+        ),
+        ("R2", [lambda p=p: moves.remove_bigon(diagram, p) for p in moves.bigons(diagram)]),
+        ("R3", [lambda p=p: moves.slide_triangle(diagram, p) for p in moves.triangles(diagram)]),
+    ]
+    name, ways = rng.choice([(name, ways) for name, ways in made if ways])
+    return name, rng.choice(ways)()
+
+
+def scrambled(diagram: Diagram, n_crossings: int, rng: random.Random) -> Diagram:
+    """A drawing with so many crossings, by random moves that do not take them away."""
+    while diagram.n_crossings < n_crossings:
+        u = rng.random()
+        if u < 0.15:
+            dart = rng.choice(diagram.ports)
+            diagram = moves.add_kink(diagram, dart, rng.choice((1, -1)), rng.random() < 0.5)
+        elif u < 0.6:
+            diagram = moves.add_bigon(diagram, *rng.choice(moves.fingers(diagram)), rng.random() < 0.5)
+        else:
+            for _ in range(10):
+                if places := moves.triangles(diagram):
+                    diagram = moves.slide_triangle(diagram, rng.choice(places))
+    return diagram
