@@ -8,8 +8,7 @@ that the same curve may have. Times are on the clock on the wall.
 from __future__ import annotations
 
 import statistics
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -33,17 +32,6 @@ TURNS = 20
 """Directions from which each curve is seen."""
 
 
-def seconds(call: Callable[[], object], repeats: int) -> float:
-    """Median time of a call [s], after one that is not counted."""
-    call()
-    taken = []
-    for _ in range(repeats):
-        began = time.perf_counter()
-        call()
-        taken.append(time.perf_counter() - began)
-    return statistics.median(taken)
-
-
 def turned(word: Sequence[int], seed: int) -> list[np.ndarray]:
     """The closure of a braid in space, turned at random."""
     rotation = Rotation.random(rng=np.random.default_rng(seed)).as_matrix()
@@ -53,7 +41,7 @@ def turned(word: Sequence[int], seed: int) -> list[np.ndarray]:
 def measure(name: str, word: Sequence[int], turns: int, repeats: int) -> dict[str, Any]:
     """Times of one knot: its curve seen from several directions, and its code."""
     curves = [turned(word, seed) for seed in range(turns)]
-    times = [seconds(lambda x=x: identify_curves(x), repeats) for x in curves]  # type: ignore[misc]
+    times = [common.seconds(lambda x=x: identify_curves(x), repeats, common.WALL) for x in curves]  # type: ignore[misc]
     drawn = [project(x, True).diagram for x in curves]
     code = from_text("{" + ",".join(map(str, word)) + "}")
     return (
@@ -63,7 +51,7 @@ def measure(name: str, word: Sequence[int], turns: int, repeats: int) -> dict[st
             "crossings_seen": statistics.median(d.n_crossings for d in drawn),
             "ms_curve": 1e3 * statistics.median(times),
             "ms_curve_slowest": 1e3 * max(times),
-            "ms_code": 1e3 * seconds(lambda: identify(code), repeats),
+            "ms_code": 1e3 * common.seconds(lambda: identify(code), repeats, common.WALL),
         }
         | _snappy(code, repeats)
         | _pyknotid(curves[0], repeats)
@@ -77,7 +65,9 @@ def _snappy(code: Any, repeats: int) -> dict[str, float]:
     except ImportError:
         return {}
     pd = to_pd(simplify(code))
-    return {"ms_snappy": 1e3 * seconds(lambda: snappy.Link(pd).exterior().identify(), repeats)}
+    return {
+        "ms_snappy": 1e3 * common.seconds(lambda: snappy.Link(pd).exterior().identify(), repeats, common.WALL)
+    }
 
 
 def _pyknotid(curves: list[np.ndarray], repeats: int) -> dict[str, float]:
@@ -88,7 +78,10 @@ def _pyknotid(curves: list[np.ndarray], repeats: int) -> dict[str, float]:
         return {}
     if len(curves) > 1:
         return {}
-    return {"ms_pyknotid": 1e3 * seconds(lambda: Knot(curves[0], verbose=False).identify(), repeats)}
+    return {
+        "ms_pyknotid": 1e3
+        * common.seconds(lambda: Knot(curves[0], verbose=False).identify(), repeats, common.WALL)
+    }
 
 
 def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:

@@ -6,9 +6,7 @@ large polygons. Plain numpy forms arrays of all pairs.
 
 from __future__ import annotations
 
-import statistics
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -45,30 +43,19 @@ def plain(x: np.ndarray) -> float:
     return float(total / np.pi)
 
 
-def seconds(call: Callable[[], object], repeats: int) -> float:
-    """Median time of a call [s] on the clock on the wall, after one that is not counted."""
-    call()
-    taken = []
-    for _ in range(repeats):
-        began = time.perf_counter()
-        call()
-        taken.append(time.perf_counter() - began)
-    return statistics.median(taken)
-
-
 def measure(n: int, repeats: int) -> dict[str, float]:
     """Times of one size; that of plain numpy is left out where it would take too much memory."""
     x = trefoil(n)
     pairs = n * (n - 3) / 2
-    one = seconds(lambda: writhe(x, True, threads=1), repeats)
+    one = common.seconds(lambda: writhe(x, True, threads=1), repeats, common.WALL)
     row = {
         "nodes": n,
         "ms": 1e3 * one,
         "ns_per_pair": 1e9 * one / pairs,
-        "ms_two_threads": 1e3 * seconds(lambda: writhe(x, True, threads=2), repeats),
+        "ms_two_threads": 1e3 * common.seconds(lambda: writhe(x, True, threads=2), repeats, common.WALL),
     }
     if n <= NUMPY_UP_TO:
-        row["ms_numpy"] = 1e3 * seconds(lambda: plain(x), min(repeats, 3))
+        row["ms_numpy"] = 1e3 * common.seconds(lambda: plain(x), min(repeats, 3), common.WALL)
         row["off_numpy"] = abs(plain(x) - writhe(x, True))
     return row
 

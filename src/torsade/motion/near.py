@@ -15,7 +15,14 @@ from torsade.motion.rates import Work, energies, forces
 from torsade.motion.scheme import Control
 from torsade.rod.contact import Contacts, Model, compression, contacts_among, list_contacts
 from torsade.rod.kinematics import edge_geometry
-from torsade.rod.neighbours import NEXT, edge_midpoints, near_points, near_rows, without_excluded
+from torsade.rod.neighbours import (
+    NEXT,
+    edge_midpoints,
+    near_points,
+    near_rows,
+    neighbour_pairs,
+    without_excluded,
+)
 
 
 class Near(NamedTuple):
@@ -77,7 +84,7 @@ def crossing(
     pairs, rows, count = near.apart, near.guarded, near.count[0]
     if move > control.move:
         reach = _guard_reach(length, control, move)
-        pairs = without_excluded(a, near_points(mid, reach), mid, reach, NEXT, 0.0)
+        pairs = neighbour_pairs(a, mid, reach, NEXT, 0.0)
         rows = np.empty(pairs.shape[0], np.int64)
         count = near_rows(pairs, mid, reach, rows)
     k = first_crossing(a, pairs, rows, count, x0, x1, length, mid)
@@ -91,8 +98,7 @@ def measure(a: Assembly, m: Model, bc: Boundary, state: State, w: Work, out: Flo
     """
     edge_geometry(state.x, a.edges, w.length, w.tangent)
     edge_midpoints(state.x, a.edges, w.mid)
-    found = near_points(w.mid, m.diameter)
-    pairs = without_excluded(a, found, w.mid, m.diameter, m.exclusion_edges, m.exclusion_length)
+    pairs = neighbour_pairs(a, w.mid, m.diameter, m.exclusion_edges, m.exclusion_length)
     contacts = contacts_among(pairs)
     forces(a, m, bc, state.x, state.theta, w.tangent, state.reference_twist, contacts, w)
     energies(a, m, contacts, w, out)

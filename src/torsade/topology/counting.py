@@ -29,6 +29,7 @@ from torsade.topology.moves import (
     triangles,
 )
 from torsade.topology.projection import project
+from torsade.topology.seifert import turning
 
 __all__ = [
     "Face",
@@ -152,58 +153,7 @@ def whitney_index(diagram: Diagram) -> int:
     For a closed drawing in the plane this is the degree of its tangent map (Whitney 1937); arcs that lead
     from end to end are left out. Circles without crossings count as counterclockwise.
     """
-    regions = _regions(diagram)
-    sides: list[tuple[int, int]] = []
-    for curve in (*diagram.seifert_circles, *diagram.seifert_arcs):
-        if curve:
-            tail, head = diagram.edges[curve[0]]
-            sides.append((regions[diagram.face_at[tail]], regions[diagram.face_at[head]]))
-    loops = sum(1 for curve in diagram.seifert_circles if curve)
-    outside = {regions[f] for f in diagram.outer_faces}
-    index = diagram.circles
-    for k in range(loops):
-        index += 1 if _reaches(sides[k][1], outside, sides[:k] + sides[k + 1 :]) else -1
-    return index
-
-
-def _regions(diagram: Diagram) -> list[int]:
-    """The region in which each face lies when every crossing is smoothed.
-
-    Smoothing joins the face between the two strands that come in with that between the two that go out.
-    """
-    region = list(range(len(diagram.faces)))
-
-    def find(f: int) -> int:
-        while region[f] != f:
-            f = region[f]
-        return f
-
-    for c in range(diagram.n_crossings):
-        # The corner counterclockwise after port p is the face on the left of dart p.
-        outgoing = [p for p in range(4 * c, 4 * c + 4) if diagram.is_tail(p)]
-        between_out = next(p for p in outgoing if diagram.ccw(p) in outgoing)
-        between_in = between_out ^ 2
-        a, b = find(diagram.face_at[between_out]), find(diagram.face_at[between_in])
-        region[max(a, b)] = min(a, b)
-    return [find(f) for f in range(len(region))]
-
-
-def _reaches(start: int, outside: set[int], sides: Iterable[tuple[int, int]]) -> bool:
-    """Whether a region is connected to one outside across curves with these regions on their sides."""
-    across: dict[int, set[int]] = {}
-    for left, right in sides:
-        across.setdefault(left, set()).add(right)
-        across.setdefault(right, set()).add(left)
-    reached, queue = {start}, deque([start])
-    while queue:
-        region = queue.popleft()
-        if region in outside:
-            return True
-        for other in across.get(region, ()):
-            if other not in reached:
-                reached.add(other)
-                queue.append(other)
-    return False
+    return sum(turning(diagram, loop) for loop in diagram.seifert_circles)
 
 
 @dataclass(frozen=True)
