@@ -33,7 +33,7 @@ from torsade.topology.invariants import Code, oriented
 from torsade.topology.links import match_link
 from torsade.topology.lookup import Match, match_knot
 from torsade.topology.names import prime_factors, split_union, sum_name
-from torsade.topology.projection import project
+from torsade.topology.projection import project, spiral
 from torsade.topology.simplify import simplify
 
 __all__ = [
@@ -150,19 +150,11 @@ def identify_open(x: ArrayLike, directions: int = 100, seed: int = 0) -> OpenIde
     project([nodes])  # refuses what is no curve
     size = 10.0 * float(np.ptp(nodes, axis=0).max())
     counts: Counter[str] = Counter()
-    for u in _spread(directions, seed):
+    turn = Rotation.random(rng=np.random.default_rng(seed)).as_matrix()
+    for u in spiral(directions) @ turn:
         closed = np.concatenate([nodes, nodes[-1:] + size * u, nodes[:1] + size * u])
         counts[str(identify(project([closed], True, direction=_beside(u)).diagram, patience=20))] += 1
     return OpenIdentity({name: n / directions for name, n in counts.most_common()}, directions)
-
-
-def _spread(n: int, seed: int) -> NDArray[np.float64]:
-    """n unit vectors, shape (n, 3), evenly spread on a spiral over the sphere, which is turned at random."""
-    z = 1 - (2 * np.arange(n) + 1) / n
-    angle = np.pi * (3 - np.sqrt(5)) * np.arange(n)
-    r = np.sqrt(1 - z * z)
-    spiral = np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
-    return np.asarray(spiral @ Rotation.random(rng=np.random.default_rng(seed)).as_matrix())
 
 
 def _beside(u: NDArray[np.float64]) -> NDArray[np.float64]:
