@@ -82,7 +82,7 @@ def report(given: Subject, pulled: str | None, drawings: int) -> dict[str, Any]:
         "linking": drawn.linking.tolist() if drawn.n_strands > 1 else None,
         "faces": _faces(state(drawn)),
         "fewest": _counted(state(simpler)),
-        "codes": _codes(simpler),
+        "codes": _codes(simplify(diagram)),
     }
     found |= _of_tangle(given, drawn, simpler, drawings) if diagram.ends else _of_closed(simpler)
     return found | _of_curves(given)
