@@ -76,7 +76,7 @@ def identify(diagram: Diagram, patience: int = 100) -> Identity:
 
     Args:
         diagram: of a knot or a link.
-        patience: how long to look for fewer crossings, as in `simplify`.
+        patience: how long to look for fewer crossings, as in `simplify`, where the name is not certain.
 
     Raises:
         TorsadeError: the diagram has open strands.
@@ -86,8 +86,12 @@ def identify(diagram: Diagram, patience: int = 100) -> Identity:
             f"the diagram has ends {' '.join(diagram.ends)}; only closed curves are knots: close it first, "
             "or use `identify_open` on a curve"
         )
-    simpler = simplify(diagram, patience)
-    return identify_pd(to_pd(simpler.without_circles()), simpler.circles)
+    simpler = simplify(diagram, patience=0)
+    found = identify_pd(to_pd(simpler.without_circles()), simpler.circles)
+    if found.certain and not found.reason:
+        return found
+    fewest = simplify(simpler, patience)
+    return identify_pd(to_pd(fewest.without_circles()), fewest.circles)
 
 
 def identify_curves(curves: Sequence[ArrayLike]) -> Identity:
