@@ -36,7 +36,9 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
         return _unknown_command(unused[0] if unused else arguments[0], arguments)
     if kind == "UnusedCliTokensError":
         if unused[0] in arguments[2:3]:
-            option = "--centerline" if unused[0].endswith(".csv") else "--knot"
+            from torsade.files import SUFFIXES
+
+            option = "--centerline" if unused[0].lower().endswith(SUFFIXES) else "--knot"
             return f"{unused[0]!r} comes without its option; did you mean {option} {unused[0]}?"
         return (
             f"{unused[0]!r} belongs to no option; give every value after its option, and quote values with "
@@ -59,7 +61,7 @@ def _about_topology(kind: str, unused: Sequence[str], arguments: Sequence[str]) 
         return "an option is given more than once; give each once"
     if unused:
         return f"{unused[0]!r} comes after what the command is about; quote names and codes that have spaces"
-    return "nothing is given; give a name such as reef or 5_1, a code, or a CSV file"
+    return "nothing is given; give a name such as reef or 5_1, a code, or a file of curves"
 
 
 def _unknown_option(option: str, arguments: Sequence[str]) -> str:

@@ -7,8 +7,9 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from torsade.centerline import Centerline, read_csv
+from torsade.centerline import Centerline
 from torsade.errors import TorsadeError, quoted
+from torsade.files import SUFFIXES, read_centerline
 from torsade.knots.bends import bend_names, find_bend
 from torsade.knots.sutures import suture_diagram
 from torsade.topology.codes import code_kind, from_text
@@ -49,10 +50,10 @@ def subject(given: str, length_unit: str = "m") -> Subject:
     """
     text = given.strip()
     if not text:
-        raise TorsadeError("nothing is given; give a name such as reef or 5_1, a code, or a CSV file")
+        raise TorsadeError("nothing is given; give a name such as reef or 5_1, a code, or a file of curves")
     if re.match(r"--?[a-z]", text):
         raise TorsadeError(f"topology has no option {quoted(text)}; see torsade topology --help")
-    if text.lower().endswith(".csv") or "/" in text or Path(text).is_file():
+    if text.lower().endswith(SUFFIXES) or "/" in text or Path(text).is_file():
         return _file(given, length_unit)
     kind = code_kind(text)
     if kind is not None:
@@ -71,7 +72,7 @@ def subject(given: str, length_unit: str = "m") -> Subject:
 
 
 def _file(path: str, unit: str) -> Subject:
-    centerline = read_csv(path, unit)
+    centerline = read_centerline(path, unit)
     seen = project(centerline.strands, centerline.closed)
     return Subject(path, "centerline", "centerline", seen.diagram, centerline=centerline, projection=seen)
 
@@ -91,5 +92,5 @@ def _unknown(name: str) -> str:
     hint = f"did you mean {near[0]!r}? " if near else ""
     return (
         f"nothing is called {quoted(name)}; {hint}give a bend ({', '.join(bend_names())}), a knot or link "
-        "such as 3_1, m3_1#4_1 or L5a1, a suture such as 5,-3, a code or a CSV file"
+        "such as 3_1, m3_1#4_1 or L5a1, a suture such as 5,-3, a code or a file of curves"
     )

@@ -97,10 +97,10 @@ class PrisonEscape(Spec):
 
     def configuration(self) -> Centerline:
         """Two open strands, checked, at the resolution of the run."""
-        from torsade.protocols.shapes import check_built, read_centerline
+        from torsade.protocols.shapes import check_built, open_strands
 
         if self.knot is None:
-            return read_centerline(str(self.centerline), self, 2, "prison-escape pulls two strands")
+            return open_strands(str(self.centerline), self, 2, "prison-escape pulls two strands")
         from torsade.knots.stacked import bend
 
         # The bend does not care which of its two ends is the clamped one.

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from torsade.centerline import Centerline, check, read_csv
+from torsade.centerline import Centerline, check
 from torsade.curve import length, resample
 from torsade.errors import TorsadeError
+from torsade.files import read_centerline
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
 
-__all__ = ["check_built", "check_count", "check_frames", "read_centerline"]
+__all__ = ["check_built", "check_count", "check_frames", "open_strands"]
 
 LARGEST_COUNT = 100_000
 """Most nodes of a run: a step then takes about a second."""
@@ -20,9 +21,9 @@ LARGEST_RESULT = 4_000_000_000
 """Most that positions and strains of all frames may take in memory [bytes]."""
 
 
-def read_centerline(path: str, spec: Spec, strands: int, wanted: str) -> Centerline:
-    """Open strands from a CSV file, checked as given, then resampled as the specification wants."""
-    shape = read_csv(path, spec.length_unit or "m")
+def open_strands(path: str, spec: Spec, strands: int, wanted: str) -> Centerline:
+    """Open strands from a file, checked as given, then resampled as the specification wants."""
+    shape = read_centerline(path, spec.length_unit or "m")
     if len(shape.strands) != strands:
         other = {1: "tighten takes one", 2: "prison-escape takes two"}.get(len(shape.strands))
         advice = f"; {other}" if other else ""

@@ -67,10 +67,10 @@ class Tighten(Spec):
 
     def configuration(self) -> Centerline:
         """One open strand, checked, at the resolution of the run."""
-        from torsade.protocols.shapes import check_built, read_centerline
+        from torsade.protocols.shapes import check_built, open_strands
 
         if self.knot is None:
-            return read_centerline(str(self.centerline), self, 1, "tighten pulls one strand by both its ends")
+            return open_strands(str(self.centerline), self, 1, "tighten pulls one strand by both its ends")
         from torsade.knots.overhand import overhand
 
         return check_built(overhand(self.h, spacing=self.node_spacing), self.h)
