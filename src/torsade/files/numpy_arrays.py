@@ -92,7 +92,7 @@ def _read_members(archive: zipfile.ZipFile, name: str) -> Centerline:
     while f"strand{len(strands)}" in members:
         key = f"strand{len(strands)}"
         x = _strands(array_of(key), f"{key!r} in {name}")
-        strands.append(x[0])
+        strands += x
         if len(x) != 1 or len(strands) > MOST_STRANDS or sum(map(len, strands)) > MOST_NODES:
             raise TorsadeError(
                 f"{key!r} in {name} is more than one strand, or one too many; give at most {MOST_STRANDS} "
