@@ -30,16 +30,32 @@ def open_strands(path: str, spec: Spec, strands: int, wanted: str) -> Centerline
         has = "1 strand" if len(shape.strands) == 1 else f"{len(shape.strands)} strands"
         raise TorsadeError(f"{path!r} has {has}, and {wanted}{advice or f'; give {strands}'}")
     check_count(sum(len(x) for x in shape.strands))
-    check(shape, spec.h)
     for k, closed in enumerate(shape.closed):
         if closed:
             raise TorsadeError(f"strand {k} in {path!r} is closed and has no ends to pull; cut it open")
+    if spec.smooth:
+        return _smoothed(shape, spec.smooth, spec)
+    check(shape, spec.h)
     if spec.node_spacing is None:
         return shape
     check_count(sum(length(x) for x in shape.strands) / spec.node_spacing)
     resampled = Centerline(tuple(resample(x, spacing=spec.node_spacing) for x in shape.strands))
     check(resampled, spec.h)
     return resampled
+
+
+def _smoothed(shape: Centerline, scale: float, spec: Spec) -> Centerline:
+    """A measured shape without its noise, at the resolution of the run; never less smooth than asked for."""
+    from torsade.knots.measured import clean
+
+    smoother = clean(shape, scale, spec.node_spacing)
+    if smoother.scale < scale:
+        raise TorsadeError(
+            f"smoothing over {1e3 * scale:.4g} mm would pull strands through each other; give smooth = "
+            f'"{1e3 * smoother.scale:.4g} mm", which does not'
+        )
+    check(smoother, spec.h)
+    return smoother
 
 
 def check_count(nodes: float) -> None:

@@ -38,7 +38,7 @@ class Tighten(Spec):
     knot: str | None = Field(None, description="Built-in knot in one strand: overhand.")
     centerline: str | None = Field(
         None,
-        description="CSV file of one strand, columns strand,x,y,z with strand 0, in place of a knot.",
+        description="File of one strand (.csv, .xyz, .obj, .vect, .npz or .npy), in place of a knot.",
     )
     material: str = Field(
         "optomechanical", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
@@ -61,7 +61,7 @@ class Tighten(Spec):
 
     @model_validator(mode="after")
     def _bearable(self) -> Tighten:
-        self.check_shape('give a knot, "overhand", or a centerline, a CSV file of one strand')
+        self.check_shape('give a knot, "overhand", or a centerline, a file of one strand')
         self.check_strain(self.force)
         return self
 
