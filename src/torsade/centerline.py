@@ -120,7 +120,7 @@ def _check_edges(k: int, x: FloatArray, closed: bool, diameter: float) -> None:
         i = int(np.argmax(phi)) + (0 if closed else 1)
         raise TorsadeError(
             f"strand {k} turns by {np.rad2deg(phi.max()):.0f} degrees at node {i}, {_position(x[i])}; "
-            f"smooth or resample it to at most {math.degrees(SHARPEST_TURN):.0f} degrees"
+            f"smooth or resample it (--smooth) to at most {math.degrees(SHARPEST_TURN):.0f} degrees"
         )
 
 

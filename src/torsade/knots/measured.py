@@ -72,15 +72,18 @@ def clean(centerline: Centerline, scale: float | str, spacing: float | str | Non
     step = None if spacing is None else metres("spacing", spacing)
     given, closed = _sound(centerline), centerline.closed
     _check_apart(given, closed)
+    if step is not None and step > 0:
+        _check_count(sum(curve.length(x, c) / step for x, c in zip(given, closed, strict=True)))
+    counts = [len(x) for x in given]
     if s == 0:
-        return _resampled(given, closed, 0.0, step)
+        return Cleaned(_resampled(given, closed, counts, step), closed, 0.0)
     fine = [_refined(x, c, s) for x, c in zip(given, closed, strict=True)]
     _check_count(sum(map(len, fine)))
     share = 1.0
     while share >= LEAST_SHARE:
         smoother = [_smoothed(x, c, share * s) for x, c in zip(fine, closed, strict=True)]
         if carried_over(fine, smoother, closed, share * s):
-            return _resampled(smoother, closed, share * s, step)
+            return Cleaned(_resampled(smoother, closed, counts, step), closed, share * s)
         share /= 2
     raise TorsadeError(
         f"smoothing over {_mm(s)} would pull strands through each other, and so would an eighth of it; give "
@@ -119,11 +122,11 @@ def _check_apart(strands: list[FloatArray], closed: tuple[bool, ...]) -> None:
     raise TorsadeError(f"{who} at edges {i} and {j}, which leaves open what knot it is; move them apart")
 
 
-def _check_count(nodes: int) -> None:
+def _check_count(nodes: float) -> None:
     if nodes > MOST_NODES:
         raise TorsadeError(
-            f"smoothing would need {nodes} nodes, more than {MOST_NODES}; give fewer nodes, or a larger "
-            "smoothing length or spacing"
+            f"smoothing and resampling would need {nodes:.0f} nodes, more than {MOST_NODES}; give fewer, or "
+            "a larger smoothing length or spacing"
         )
 
 
@@ -131,7 +134,7 @@ def _refined(x: FloatArray, closed: bool, longest: float) -> FloatArray:
     """The same polyline with nodes added on edges that are longer than a length."""
     ends = np.concatenate([x, x[:1]]) if closed else x
     parts = np.ceil(curve.edge_lengths(x, closed) / longest)
-    _check_count(int(min(parts.sum(), 1e9)))
+    _check_count(float(parts.sum()))
     count = parts.astype(int)
     edge = np.repeat(np.arange(len(count)), count)
     share = (np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)) / count[edge]
@@ -150,14 +153,12 @@ def _smoothed(x: FloatArray, closed: bool, scale: float) -> FloatArray:
 
 
 def _resampled(
-    strands: list[FloatArray], closed: tuple[bool, ...], scale: float, spacing: float | None
-) -> Cleaned:
+    strands: list[FloatArray], closed: tuple[bool, ...], counts: list[int], spacing: float | None
+) -> tuple[FloatArray, ...]:
     """Nodes spread evenly along splines; these, with old and new nodes, are thinned to either."""
     both, old, new = [], [], []
-    for x, c in zip(strands, closed, strict=True):
-        n = len(x) if spacing is None else None
-        fresh = curve.resample(x, n=n, spacing=spacing, closed=c)
-        _check_count(len(fresh))
+    for x, c, count in zip(strands, closed, counts, strict=True):
+        fresh = curve.resample(x, n=count if spacing is None else None, spacing=spacing, closed=c)
         nodes, is_old, is_new = _together(x, fresh, c)
         both.append(nodes)
         old.append(is_old)
@@ -166,8 +167,7 @@ def _resampled(
         raise TorsadeError(
             "with nodes so far apart strands would pass through each other; give a smaller spacing"
         )
-    result = [nodes[is_new] for nodes, is_new in zip(both, new, strict=True)]
-    return Cleaned(tuple(result), closed, scale)
+    return tuple(nodes[is_new] for nodes, is_new in zip(both, new, strict=True))
 
 
 def _together(x: FloatArray, fresh: FloatArray, closed: bool) -> tuple[FloatArray, BoolArray, BoolArray]:
