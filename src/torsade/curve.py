@@ -255,7 +255,7 @@ def smooth(x: ArrayLike, scale: float, closed: bool = False, lengths: ArrayLike 
             along x: noise makes edges longer than the curve is.
 
     Raises:
-        TorsadeError: `scale` negative or not finite, or an edge without length.
+        TorsadeError: `scale` negative or not finite, an edge without length, or a wrong number of lengths.
     """
     from scipy.sparse import csc_array, diags_array
     from scipy.sparse.linalg import spsolve
@@ -266,9 +266,10 @@ def smooth(x: ArrayLike, scale: float, closed: bool = False, lengths: ArrayLike 
     n = len(x)
     if scale == 0 or n < 3:
         return x.copy()
-    l = _positive_lengths(
-        edge_lengths(x, closed) if lengths is None else np.asarray(lengths, dtype=np.float64)
-    )
+    l = edge_lengths(x, closed)
+    if lengths is not None and np.shape(lengths) != l.shape:
+        raise TorsadeError(f"{len(l)} edges have lengths of shape {np.shape(lengths)}; give one for each")
+    l = _positive_lengths(l if lengths is None else np.asarray(lengths, dtype=np.float64))
     hinge = np.arange(n) if closed else np.arange(1, n - 1)
     before, after = l[hinge - 1], l[hinge % len(l)]
     lbar = (before + after) / 2

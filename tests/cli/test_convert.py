@@ -42,7 +42,8 @@ def test_the_table_says_what_was_read_and_written(tmp_path: Path) -> None:
     arguments = ("--length-unit", "mm", "--smooth", "0.5 mm", "--spacing", "0.25 mm")
     done = shell("convert", "scan.obj", "knot.vect", *arguments, cwd=tmp_path)
     assert (done.returncode, done.stderr) == (0, "")
-    assert "scan.obj, in mm: 1 strand" in done.stdout
+    assert "read from                 scan.obj\n" in done.stdout
+    assert "strands                   1, in mm" in done.stdout
     assert "smoothed over             0.5 mm; the knot is the same" in done.stdout
     assert "closed, " in done.stdout
     assert "read 200 nodes, " in done.stdout

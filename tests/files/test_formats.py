@@ -131,6 +131,15 @@ def test_an_array_of_several_strands(tmp_path: Path) -> None:
     assert same(c, Centerline((x[0], x[1]), (True, True)))
 
 
+def test_an_open_strand_that_ends_where_it_began(tmp_path: Path) -> None:
+    """NPZ alone can say so."""
+    c = Centerline((np.concatenate([SQUARE, SQUARE[:1]]), SQUARE), (False, True))
+    write_centerline(c, tmp_path / "a.npz")
+    assert same(read_centerline(tmp_path / "a.npz"), c)
+    write_centerline(c, tmp_path / "a.csv")
+    assert read_centerline(tmp_path / "a.csv").closed == (True, True)
+
+
 def test_long_obj_strands_are_written_in_records(tmp_path: Path) -> None:
     x = np.random.default_rng(0).normal(size=(2500, 3))
     write_centerline(Centerline((x, SQUARE), (True, False)), tmp_path / "a.obj")

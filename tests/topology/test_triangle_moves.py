@@ -8,7 +8,7 @@ from curves import hopf_link, random_loop, random_polygon, ring, torus_knot
 
 from torsade.arrays import Floats
 from torsade.topology import braid_curves, identify_curves, linking
-from torsade.topology.isotopy import _chain, _trifles, carried_over, thinned_to
+from torsade.topology.isotopy import carried_over, chain_of, thinned_to
 from torsade.topology.triangle_moves import OUT, is_free, pierces, take_out
 
 
@@ -32,7 +32,7 @@ def test_what_pierces_is_what_crosses() -> None:
 def test_boxes_hide_no_edge(closed: bool) -> None:
     """Random polygons full of crossings, while nodes are taken out."""
     x = random_polygon(1, 150)
-    chain = _chain([x], [closed], _trifles([x], [closed]))
+    chain = chain_of([x], [closed])
     for longest in (0.0, 0.7, 1.0):
         take_out(chain, np.ones(len(x), dtype=bool), longest)
         here = np.flatnonzero(chain.after != OUT)
@@ -63,7 +63,7 @@ def test_boxes_hide_no_edge(closed: bool) -> None:
 )
 def test_a_thinned_knot_is_the_same_knot(x: Floats, name: str | None, most: int) -> None:
     """Few nodes are left, and what they make is named as before."""
-    chain = _chain([x], [True], _trifles([x], [True]))
+    chain = chain_of([x], [True])
     take_out(chain, np.ones(len(x), dtype=bool), np.inf)
     left = chain.x[chain.after != OUT]
     assert 3 <= len(left) <= most

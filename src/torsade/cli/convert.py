@@ -9,7 +9,7 @@ from typing import Any
 
 from torsade import curve
 from torsade.centerline import Centerline
-from torsade.errors import TorsadeError, counted
+from torsade.errors import TorsadeError
 from torsade.files import read_centerline, write_centerline
 from torsade.files.centerlines import format_of
 
@@ -50,6 +50,7 @@ def convert(
         return 0
     from torsade.cli.table import print_file, print_rows
 
+    print_file("read from", given)
     print_rows(_rows(found, smooth))
     print_file("written to", out)
     return 0
@@ -64,8 +65,7 @@ def _measured(centerline: Centerline) -> list[dict[str, Any]]:
 
 
 def _rows(found: dict[str, Any], smooth: str | None) -> Iterator[tuple[str, str]]:
-    unit = found["length_unit"]
-    yield "read", f"{found['input']}, in {unit}: {counted(len(found['read']), 'strand')}"
+    yield "strands", f"{len(found['read'])}, in {found['length_unit']}"
     if smooth is not None:
         yield "smoothed over", f"{1e3 * found['smoothed_m']:.4g} mm; the knot is the same"
     for k, (before, after) in enumerate(zip(found["read"], found["written"], strict=True)):

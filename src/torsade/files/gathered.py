@@ -56,13 +56,16 @@ class Gathered:
         return made(self.name, [np.array(x).reshape(-1, 3) for x in self.numbers], closed)
 
 
-def made(name: str, strands: Iterable[FloatArray], closed: Sequence[bool] | None = None) -> Centerline:
+def made(
+    name: str, strands: Iterable[FloatArray], closed: Sequence[bool] | None = None, told: bool = False
+) -> Centerline:
     """A centerline of strands read from a file; one that ends with its first node is closed.
 
     Args:
         name: of the file, quoted, for messages.
         strands: nodes of each, shapes (n, 3).
         closed: which are closed whether or not they end with their first node.
+        told: whether `closed` is all there is to say.
 
     Raises:
         TorsadeError: no strand, or one of too few nodes.
@@ -74,10 +77,10 @@ def made(name: str, strands: Iterable[FloatArray], closed: Sequence[bool] | None
             raise TorsadeError(f"strand {k} in {name} has {has}; give at least 2")
         # Three distinct nodes make a loop; fewer that return are an error left to `check`.
         returns = len(x) > 3 and bool((x[0] == x[-1]).all())
-        shut = returns or (closed is not None and closed[k])
+        shut = (returns and not told) or (closed is not None and closed[k])
         if shut and len(x) < 3:
             raise TorsadeError(f"strand {k} in {name} is closed and has 2 nodes; give at least 3")
-        nodes.append(x[:-1] if returns else x)
+        nodes.append(x[:-1] if returns and shut else x)
         flags.append(shut)
     if not nodes:
         raise TorsadeError(f"{name} has no nodes; give at least one strand of 2 nodes")

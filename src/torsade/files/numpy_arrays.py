@@ -1,8 +1,8 @@
 """NPZ and NPY: arrays of nodes, shape (n, 3), or (m, n, 3) for m strands; never pickles.
 
 An NPZ file holds `strand0`, `strand1` ... or one array `x`, and may hold `closed`, a truth value for each
-strand. A strand that ends with its first node is closed too. Sizes are judged by the headers, before data
-is read or unpacked.
+strand. Without it a strand that ends with its first node is closed. Sizes are judged by the headers, before
+data is read or unpacked.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ def _read_members(archive: zipfile.ZipFile, name: str) -> Centerline:
         raise TorsadeError(
             f"'closed' in {name} has {closed.dtype} of shape {closed.shape}; give {len(strands)} truth values"
         )
-    return made(name, strands, np.broadcast_to(closed, (len(strands),)).tolist())
+    return made(name, strands, np.broadcast_to(closed, (len(strands),)).tolist(), told=True)
 
 
 def _array(stream: BinaryIO | IO[bytes], what: str) -> NDArray[Any]:

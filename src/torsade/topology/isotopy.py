@@ -14,7 +14,7 @@ from torsade.arrays import Bools, Floats
 from torsade.curve import length
 from torsade.topology.triangle_moves import OUT, RUN, Chain, enclose_all, move_all, take_out
 
-__all__ = ["carried_over", "thinned_to"]
+__all__ = ["carried_over", "chain_of", "thinned_to"]
 
 _SHAKE = 1e-8
 """How far nodes are put from where they stand, in edges, so that none lies on a line or plane of others."""
@@ -41,10 +41,8 @@ def carried_over(
         closed: which strands are closed.
         scale: a length [m] below which the shape of strands means nothing.
     """
-    trifles = _trifles(before, closed)
-    origin = before[0][0]
     for coarse in _COARSENINGS:
-        start, goal = (_chain([x - origin for x in strands], closed, trifles) for strands in (before, after))
+        start, goal = chain_of(before, closed), chain_of(after, closed, before)
         if coarse:
             every = np.ones(len(start.x), dtype=bool)
             for share in (0.25, 0.5, 1.0):
@@ -65,21 +63,21 @@ def thinned_to(strands: Sequence[Floats], closed: Sequence[bool], keep: Sequence
         closed: which are closed.
         keep: which nodes of each are to stay, shapes (n,); ends of open strands must.
     """
-    origin = strands[0][0]
-    chain = _chain([x - origin for x in strands], closed, _trifles(strands, closed))
-    return int(take_out(chain, ~np.concatenate(keep), np.inf)) == 0
+    return int(take_out(chain_of(strands, closed), ~np.concatenate(keep), np.inf)) == 0
 
 
-def _trifles(strands: Sequence[Floats], closed: Sequence[bool]) -> Floats:
-    """How far each node is put from where it stands [m], shape (n, 3); the same every time."""
-    n = sum(map(len, strands))
-    edge = sum(length(x, c) for x, c in zip(strands, closed, strict=True)) / n
-    return np.asarray(_SHAKE * edge * np.random.default_rng(0).uniform(-1, 1, (n, 3)))
+def chain_of(strands: Sequence[Floats], closed: Sequence[bool], like: Sequence[Floats] = ()) -> Chain:
+    """All strands in one array, each node put a trifle away from where it stands; the same every time.
 
-
-def _chain(strands: Sequence[Floats], closed: Sequence[bool], trifles: Floats) -> Chain:
-    """All strands in one array, near the origin, where trifles are not lost."""
-    x = np.concatenate(strands) + trifles
+    Args:
+        strands: nodes [m] of each, shapes (n, 3).
+        closed: which are closed.
+        like: strands of as many nodes, with whose origin and trifles these are to be compared.
+    """
+    like = like or strands
+    x = np.concatenate(strands) - like[0][0]  # far from the origin a trifle would be lost
+    edge = sum(length(s, c) for s, c in zip(like, closed, strict=True)) / len(x)
+    x += _SHAKE * edge * np.random.default_rng(0).uniform(-1, 1, x.shape)
     after = np.arange(1, len(x) + 1)
     first = 0
     for s, is_closed in zip(strands, closed, strict=True):
