@@ -68,6 +68,12 @@ def test_json_agrees_with_the_files(tmp_path: Path) -> None:
     assert (tmp_path / "a.vtk").stat().st_size > 1000
 
 
+def test_every_few_nodes(tmp_path: Path) -> None:
+    ts.write_centerline(trefoil(), tmp_path / "a.xyz")
+    assert shell("convert", "a.xyz", "b.csv", "--every", "4", cwd=tmp_path).returncode == 0
+    assert len(ts.read_csv(tmp_path / "b.csv").strands[0]) == 50
+
+
 def test_an_earlier_file_is_replaced_only_when_asked_to(tmp_path: Path) -> None:
     ts.write_centerline(trefoil(), tmp_path / "a.xyz")
     (tmp_path / "b.csv").write_text("mine")
@@ -93,6 +99,8 @@ def test_an_earlier_file_is_replaced_only_when_asked_to(tmp_path: Path) -> None:
         (("a.xyz", "b.csv", "--smooth", "1 kg"), "is a mass, not a length"),
         (("a.xyz", "b.csv", "--smooth"), "--smooth has no value"),
         (("a.xyz", "b.csv", "--spacing", "6"), "with nodes so far apart strands would pass through"),
+        (("a.xyz", "b.csv", "--every", "0"), "every is 0; give a whole number from 1"),
+        (("a.xyz", "b.csv", "--every", "-2"), "--every is '-2'; give a whole number"),
         (("a.xyz", "b.csv", "--length-unit", "furlong"), "unknown unit 'furlong'"),
         (("a.xyz", "b.csv", "--smoth", "1"), "did you mean --smooth?"),
         (("--smoth", "1", "a.xyz", "b.csv"), "did you mean --smooth?"),

@@ -130,8 +130,7 @@ def test_noise_that_ties_knots_of_its_own() -> None:
             continue
         with pytest.raises(TorsadeError, match="where noise is larger than the distance of nodes, every few"):
             clean(given, 0.5, 0.25)
-        sparse = Centerline((given.strands[0][::4],), (True,))
-        assert str(identify_curves(clean(sparse, 0.5, 0.25).strands)) == "3_1"
+        assert str(identify_curves(clean(given, 0.5, 0.25, every=4).strands)) == "3_1"
     assert min(said.values()) >= 3
 
 
@@ -224,10 +223,12 @@ def test_reference_bends_with_noise(name: str, amplitude: float) -> None:
         ((ring(20),), True, {"scale": np.nan}, "the smoothing length is nan m"),
         ((ring(20),), True, {"scale": "1 kg"}, "is a mass, not a length"),
         ((ring(20),), True, {"scale": 1e-9}, "more than 100000; give fewer, or a larger"),
+        ((ring(20),), True, {"every": 0}, "every is 0; give a whole number from 1"),
+        ((ring(20),), True, {"every": 10}, "strand 0 has 2 different nodes left; give at least 3"),
         ((ring(20),), True, {"spacing": 0.0}, "spacing of nodes cannot be 0"),
         ((ring(20),), True, {"spacing": 1e-6}, "more than 100000; give fewer, or a larger"),
         ((np.vstack([ring(20), [[np.nan, 0, 0]]]),), True, {}, "node 20 of strand 0 is not finite"),
-        ((np.zeros((5, 3)),), False, {}, "strand 0 has 1 different nodes; give at least 2"),
+        ((np.zeros((5, 3)),), False, {}, "strand 0 has 1 different nodes left; give at least 2"),
         ((ring(20), ring(20)), True, {}, "strands 0 and 1 meet at edges"),
         ((np.array([[-1.0, 0, 0], [1, 0, 0], [1, 1, 0], [0, -1, 0]]),), False, {}, "strand 0 meets itself"),
     ],
@@ -243,6 +244,14 @@ def test_too_few_nodes_for_the_knot_are_refused() -> None:
     given = Centerline(tuple(braid_curves([1, 1, 1])), (True,))
     with pytest.raises(TorsadeError, match="with nodes so far apart strands would pass through each other"):
         clean(given, 0.2, 6.0)
+
+
+@pytest.mark.parametrize(("n", "every", "left"), [(10, 3, 4), (11, 3, 5), (10, 1, 10), (10, 99, 2)])
+def test_ends_are_among_every_few_nodes(n: int, every: int, left: int) -> None:
+    x = np.stack([np.arange(n), np.arange(n) ** 2, np.zeros(n)], axis=1)
+    (y,) = clean(Centerline((x,)), 0.0, every=every).strands
+    assert len(y) == left
+    np.testing.assert_array_equal(y[[0, -1]], x[[0, -1]])
 
 
 def test_repeated_nodes_are_left_out() -> None:

@@ -200,6 +200,14 @@ def _convert(
             help='Spread nodes evenly, at most so far apart, such as "0.1 mm" [default: as given].',
         ),
     ] = None,
+    every: Annotated[
+        str,
+        Parameter(
+            allow_leading_hyphen=True,
+            help="Take every so many nodes only, where noise is larger than the distance of nodes "
+            "[default: 1].",
+        ),
+    ] = "1",
     json: Annotated[bool, Parameter(help=OPTIONS["json"][1])] = False,
     overwrite: Annotated[bool, Parameter(help="Replace OUT where it exists.")] = False,
 ) -> int:
@@ -209,7 +217,7 @@ def _convert(
     """
     from torsade.cli.convert import convert
 
-    return convert(given, out, length_unit, smooth, spacing, json, overwrite)
+    return convert(given, out, length_unit, smooth, spacing, every, json, overwrite)
 
 
 def _protocol_command(spec: type[Spec]) -> Callable[..., int]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json as json_format
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -22,6 +23,7 @@ def convert(
     length_unit: str,
     smooth: str | None,
     spacing: str | None,
+    every: str,
     json: bool,
     overwrite: bool,
 ) -> int:
@@ -31,10 +33,12 @@ def convert(
         raise TorsadeError(f"{out!r} exists already; give another name, or --overwrite to replace it")
     read = read_centerline(given, length_unit)
     written, scale = read, 0.0
-    if smooth is not None or spacing is not None:
+    if not re.fullmatch(r"\d{1,6}", every.strip(), re.A):
+        raise TorsadeError(f"--every is {every!r}; give a whole number, such as 4 for every fourth node")
+    if smooth is not None or spacing is not None or int(every) != 1:
         from torsade.knots.measured import clean
 
-        written = cleaned = clean(read, smooth or 0.0, spacing)
+        written = cleaned = clean(read, smooth or 0.0, spacing, int(every))
         scale = cleaned.scale
     write_centerline(written, out)
     found = {

@@ -17,7 +17,7 @@ __all__ = ["parse_error", "say"]
 VALUED = MappingProxyType(
     {
         "topology": ("--pulled", "--drawings", "--length-unit"),
-        "convert": ("--length-unit", "--smooth", "--spacing"),
+        "convert": ("--length-unit", "--smooth", "--spacing", "--every"),
     }
 )
 """Options that take a value, of commands that are not made from specifications."""

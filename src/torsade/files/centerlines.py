@@ -107,8 +107,8 @@ def format_of(path: str | Path, reading: bool) -> Format:
         if reading:
             with opened(Path(path)):  # what is no file at all is refused as such
                 pass
-        ends = f"ends in {suffix!r}" if suffix else "has no suffix"
-        raise TorsadeError(f"{str(path)!r} {ends}, which is no format of curves; give one of {known}")
+        ends = f"ends in {suffix!r}, which is no" if suffix else "has no suffix to say its"
+        raise TorsadeError(f"{str(path)!r} {ends} format of curves; give one of {known}")
     if reading and form.read is None:
         raise TorsadeError(f"{str(path)!r} is of a format that is written, not read; give one of {known}")
     return form

@@ -42,7 +42,9 @@ class Cleaned(Centerline):
     scale: float = 0.0
 
 
-def clean(centerline: Centerline, scale: float | str, spacing: float | str | None = None) -> Cleaned:
+def clean(
+    centerline: Centerline, scale: float | str, spacing: float | str | None = None, every: int = 1
+) -> Cleaned:
     """Smooth away what is shorter than a scale, and spread nodes evenly; the knot stays what it is.
 
     That no strand passes through another on the way from the nodes as given to the result is shown by a
@@ -56,6 +58,8 @@ def clean(centerline: Centerline, scale: float | str, spacing: float | str | Non
         centerline: strands of measured nodes [m], in their order along the strand.
         scale: smoothing length [m], 0 for none; below the distance of strands from each other.
         spacing: greatest distance between nodes of the result [m]; as many as are given, if left out.
+        every: of the nodes as given take every so many only. Where noise is larger than the distance of nodes
+            it may tie small knots; with fewer nodes there are none, and theirs is the knot that stays.
 
     Raises:
         TorsadeError: strands that touch each other or themselves, nodes that are not finite, a length out of
@@ -70,7 +74,9 @@ def clean(centerline: Centerline, scale: float | str, spacing: float | str | Non
     if not 0 <= s < math.inf:
         raise TorsadeError(f"the smoothing length is {s:g} m; give a length of at least 0")
     step = None if spacing is None else metres("spacing", spacing)
-    given, closed = _sound(centerline), centerline.closed
+    if not 1 <= every <= MOST_NODES:
+        raise TorsadeError(f"every is {every}; give a whole number from 1, such as 4 for every fourth node")
+    given, closed = _sound(centerline, every), centerline.closed
     _check_apart(given, closed)
     if step is not None and step > 0:
         _check_count(sum(curve.length(x, c) / step for x, c in zip(given, closed, strict=True)))
@@ -87,12 +93,13 @@ def clean(centerline: Centerline, scale: float | str, spacing: float | str | Non
         share /= 2
     raise TorsadeError(
         f"smoothing over {_mm(s)} would pull strands through each other, and so would an eighth of it; give "
-        "a smaller length or, where noise is larger than the distance of nodes, every few nodes only"
+        "a smaller length or, where noise is larger than the distance of nodes, every few nodes only "
+        "(torsade convert --every 4)"
     )
 
 
-def _sound(centerline: Centerline) -> list[FloatArray]:
-    """The nodes of each strand without repetitions, refused where they make no curve."""
+def _sound(centerline: Centerline, every: int) -> list[FloatArray]:
+    """Every so many nodes of each strand, without repetitions, refused where they make no curve."""
     found = []
     for k, (x, closed) in enumerate(zip(centerline.strands, centerline.closed, strict=True)):
         if not np.isfinite(x).all():
@@ -103,9 +110,11 @@ def _sound(centerline: Centerline) -> list[FloatArray]:
         nodes = x[moved]
         if closed and len(nodes) > 1 and (nodes[0] == nodes[-1]).all():
             nodes = nodes[:-1]
+        last = [] if closed or (len(nodes) - 1) % every == 0 else [len(nodes) - 1]
+        nodes = nodes[[*range(0, len(nodes), every), *last]]
         least = 3 if closed else 2
         if len(nodes) < least:
-            raise TorsadeError(f"strand {k} has {len(nodes)} different nodes; give at least {least}")
+            raise TorsadeError(f"strand {k} has {len(nodes)} different nodes left; give at least {least}")
         found.append(nodes)
     _check_count(sum(map(len, found)))
     return found
