@@ -144,7 +144,7 @@ def test_a_noisy_centerline_is_smoothed_as_asked_or_not_at_all(tmp_path: Path) -
     smooth = spec.configuration()
     assert max(np.linalg.norm(np.diff(x, axis=0), axis=1).max() for x in smooth.strands) <= 0.5 * spec.h
     assert spec.stored()["smooth"] == 2e-4
-    with pytest.raises(ts.TorsadeError, match=r'would pull strands through each other; give smooth = "'):
+    with pytest.raises(ts.TorsadeError, match=r'may pull strands through each other; give smooth = "'):
         PrisonEscape(centerline=path, smooth="1.6 mm").configuration()
 
 

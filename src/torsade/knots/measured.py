@@ -63,7 +63,7 @@ def clean(
 
     Raises:
         TorsadeError: strands that touch each other or themselves, nodes that are not finite, a length out of
-            range, or a knot that would change.
+            range, or a knot that may change.
 
     >>> from torsade.topology import braid_curves
     >>> (x,) = clean(Centerline(tuple(braid_curves([1, 1, 1])), (True,)), 0.1, spacing=0.25).strands
@@ -92,7 +92,7 @@ def clean(
             return Cleaned(_resampled(smoother, closed, counts, step), closed, share * s)
         share /= 2
     raise TorsadeError(
-        f"smoothing over {_mm(s)} would pull strands through each other, and so would an eighth of it; give "
+        f"smoothing over {_mm(s)} may pull strands through each other, and so may an eighth of it; give "
         "a smaller length or, where noise is larger than the distance of nodes, every few nodes only "
         "(torsade convert --every 4)"
     )

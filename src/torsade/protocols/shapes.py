@@ -51,7 +51,7 @@ def _smoothed(shape: Centerline, scale: float, spec: Spec) -> Centerline:
     smoother = clean(shape, scale, spec.node_spacing)
     if smoother.scale < scale:
         raise TorsadeError(
-            f"smoothing over {1e3 * scale:.4g} mm would pull strands through each other; give smooth = "
+            f"smoothing over {1e3 * scale:.4g} mm may pull strands through each other; give smooth = "
             f'"{1e3 * smoother.scale:.4g} mm", which does not'
         )
     check(smoother, spec.h)
