@@ -20,7 +20,7 @@ KEYS = {
     "input", "kind", "title", "strands", "ends", "pulled", "crossings", "charges", "writhe", "linking", "tau",
     "circulation", "circulation_range", "whitney", "faces", "fewest", "pulls", "strand_types", "closures",
     "names", "certain", "reason", "alexander", "determinant", "signature", "jones", "writhe_3d", "acn",
-    "linking_3d", "projection", "closed_at_infinity",
+    "linking_3d", "projection", "closed_at_infinity", "codes",
 }  # fmt: skip
 
 
@@ -238,6 +238,47 @@ def test_the_range_of_gamma_is_left_out_or_limited() -> None:
         "complete": True,
     }
     assert found("hunter", drawings=3)["circulation_range"]["complete"] is False
+
+
+@pytest.mark.parametrize("name", ["3_1", "m8_19", "L5a1", "3_1#4_1", "unknot"])
+def test_codes_are_read_back(name: str) -> None:
+    for kind, code in found(name)["codes"].items():
+        if code and name != "unknot":
+            names = found(code)["names"]
+            assert names == found(name)["names"] or (kind == "dt" and len(names) == 1), (kind, code)
+
+
+def test_codes_of_a_tangle_are_read_back() -> None:
+    codes = found("carrick", "A1B0")["codes"]
+    assert found(codes["pd"], "A1B0")["circulation"] == pytest.approx(10 / 3)
+    assert codes["gauss"] is codes["dt"] is codes["conway"] is None
+
+
+def test_a_file_is_looked_at_from_where_one_says(tmp_path: Path) -> None:
+    built = ts.knots.bend("reef")
+    path = tmp_path / "reef.csv"
+    ts.write_csv(built, path)
+
+    def seen(direction: str) -> dict[str, Any]:
+        return report(subject(str(path), direction=direction), "A1B1", 0)
+
+    assert seen("z")["projection"]["direction"] == pytest.approx([0, 0, 1], abs=0.05)
+    assert seen("0, -2, 0")["projection"]["direction"] == pytest.approx([0, -1, 0], abs=0.05)
+    assert seen("-x")["projection"]["direction"] == pytest.approx([-1, 0, 0], abs=0.05)
+    fewest = seen("fewest")
+    assert (fewest["crossings"], fewest["tau"]) == (6, 1)
+
+
+@pytest.mark.parametrize("direction", ["0,0,0", "w", "1,2", "1,2,nan", "inf,0,0", ""])
+def test_directions_that_are_none(tmp_path: Path, direction: str) -> None:
+    (tmp_path / "a.csv").write_text("strand,x,y,z\n0,0,0,0\n0,1,0,0\n")
+    with pytest.raises(ts.TorsadeError, match=r"--direction is .*; give an axis such as z, three numbers"):
+        subject(str(tmp_path / "a.csv"), direction=direction)
+
+
+def test_a_drawing_has_its_own_direction() -> None:
+    with pytest.raises(ts.TorsadeError, match="'reef' is a drawing already; give it with a file"):
+        subject("reef", direction="x")
 
 
 def test_a_tangle_as_a_code() -> None:

@@ -163,6 +163,13 @@ def _topology(
         str,
         Parameter(help="How many drawings to look at for the range of Gamma; 0 for none [default: 500]."),
     ] = "500",
+    direction: Annotated[
+        str | None,
+        Parameter(
+            help="From where a file is looked at: an axis, three numbers such as 1,0,0.5, or fewest, that of "
+            "200 directions with fewest crossings [default: z]."
+        ),
+    ] = None,
     length_unit: Annotated[str, Parameter(help="Unit of x, y, z in a file [default: m].")] = "m",
     json: Annotated[bool, Parameter(help=OPTIONS["json"][1])] = False,
 ) -> int:
@@ -176,7 +183,7 @@ def _topology(
     """
     from torsade.cli.topology import topology
 
-    return topology(given, pulled, drawings, length_unit, json)
+    return topology(given, pulled, drawings, direction, length_unit, json)
 
 
 def _convert(

@@ -16,7 +16,7 @@ __all__ = ["parse_error", "say"]
 
 VALUED = MappingProxyType(
     {
-        "topology": ("--pulled", "--drawings", "--length-unit"),
+        "topology": ("--pulled", "--drawings", "--direction", "--length-unit"),
         "convert": ("--length-unit", "--smooth", "--spacing", "--every"),
     }
 )

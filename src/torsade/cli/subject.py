@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import difflib
+import math
 import re
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from torsade.centerline import Centerline
@@ -15,7 +17,7 @@ from torsade.knots.sutures import suture_diagram
 from torsade.topology.codes import code_kind, from_text
 from torsade.topology.diagram import Diagram
 from torsade.topology.named import COMMON_NAMES, looks_like_a_name, named_diagram
-from torsade.topology.projection import Projection, project
+from torsade.topology.projection import Projection, clearest, project
 
 __all__ = ["Subject", "subject"]
 
@@ -42,8 +44,13 @@ class Subject:
     projection: Projection | None = None
 
 
-def subject(given: str, length_unit: str = "m") -> Subject:
+def subject(given: str, length_unit: str = "m", direction: str | None = None) -> Subject:
     """Read the argument of the command; what it is, its form says.
+
+    Args:
+        given: what was typed.
+        length_unit: of the nodes in a file.
+        direction: along which a file is seen: an axis, three numbers, or "fewest".
 
     Raises:
         TorsadeError: it is none of these, or a file or code that cannot be read.
@@ -54,7 +61,11 @@ def subject(given: str, length_unit: str = "m") -> Subject:
     if re.match(r"--?[a-z]", text):
         raise TorsadeError(f"topology has no option {quoted(text)}; see torsade topology --help")
     if text.lower().endswith(SUFFIXES) or "/" in text or Path(text).is_file():
-        return _file(given, length_unit)
+        return _file(given, length_unit, direction)
+    if direction is not None:
+        raise TorsadeError(
+            f"--direction is {direction!r}, but {quoted(text)} is a drawing already; give it with a file"
+        )
     kind = code_kind(text)
     if kind is not None:
         return Subject(given, kind, kind, from_text(text))
@@ -71,10 +82,29 @@ def subject(given: str, length_unit: str = "m") -> Subject:
     return _bend(given, text)
 
 
-def _file(path: str, unit: str) -> Subject:
+def _file(path: str, unit: str, direction: str | None) -> Subject:
+    along = None if direction in (None, "fewest") else _vector(str(direction))
     centerline = read_centerline(path, unit)
-    seen = project(centerline.strands, centerline.closed)
+    look = clearest if direction == "fewest" else partial(project, direction=along)
+    seen = look(centerline.strands, centerline.closed)
     return Subject(path, "centerline", "centerline", seen.diagram, centerline=centerline, projection=seen)
+
+
+def _vector(text: str) -> tuple[float, ...]:
+    """A direction: an axis such as -z, or three numbers."""
+    axis = re.fullmatch(r"([+-]?)([xyz])", text.strip().lower())
+    if axis:
+        return tuple((-1.0 if axis[1] == "-" else 1.0) * (name == axis[2]) for name in "xyz")
+    words = [word for word in re.split(r"[\s,()\[\]]+", text) if word]
+    try:
+        vector = tuple(map(float, words))
+    except ValueError:
+        vector = ()
+    if len(vector) != 3 or not 0 < sum(map(abs, vector)) < math.inf:
+        raise TorsadeError(
+            f"--direction is {quoted(text)}; give an axis such as z, three numbers such as 1,0,0.5, or fewest"
+        )
+    return vector
 
 
 def _bend(given: str, name: str) -> Subject:

@@ -72,7 +72,7 @@ def _spread(spread: dict[str, Any]) -> str:
     drawn = f"{counted(spread['drawings'], 'drawing')} of {counted(spread['crossings'], 'crossing')}"
     value = low if low == high else f"{low} to {high}"
     more = "all that were found" if spread["complete"] else "there may be more: see --drawings"
-    return f"{value} over {drawn}, ends in place; {more}"
+    return f"{value} over {drawn}, ends swinging freely; {more}"
 
 
 def _tangle(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
@@ -105,6 +105,10 @@ def _closed(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield "determinant", str(found["determinant"])
     yield "signature", _signed(found["signature"])
     yield "Jones polynomial", found["jones"]["text"] if found["jones"] else "not computed: too wide"
+    if found["fewest"]["crossings"] and found["codes"]["conway"]:
+        yield "Conway notation", found["codes"]["conway"]
+    if found["fewest"]["crossings"] and found["codes"]["dt"]:
+        yield "Dowker-Thistlethwaite", found["codes"]["dt"].removeprefix("DT: ")
 
 
 def _space(found: dict[str, Any]) -> Iterator[tuple[str, str]]:

@@ -8,7 +8,7 @@
 | `named` | diagrams of knots and links by name |
 | `drawing_curves` | curves in space from braid words |
 | `tangle` | sums, products, closures, cuts, connected sums and summands |
-| `moves`, `simplify` | Reidemeister moves one by one; fewer crossings by pass moves |
+| `moves`, `swing`, `simplify` | Reidemeister moves one by one; swinging ends; fewer crossings by pass moves |
 | `canonical` | when two drawings are the same |
 | `seifert` | which way Seifert circles run |
 | `draft` | the workbench on which diagrams are changed |

@@ -39,13 +39,13 @@ def lead_out(
     angles = _angles(tips)
     if len(blocks) > 1:
         seen = sorted(range(-m, 0), key=lambda end: (angles[end], end))
-        if not _ordered(draft, seen, names).genus:
+        if not _ordered(draft, seen).genus:
             order = seen
         else:
             turned = [_turned(block, angles) for block in blocks]
             order = [end for block in sorted(turned, key=lambda b: angles[b[0]]) for end in block]
     k = order.index(-m)
-    return _ordered(draft, order[k:] + order[:k], names), n_led_out
+    return _ordered(draft, order[k:] + order[:k]), n_led_out
 
 
 def _led_out(draft: Draft, end: int) -> int:
@@ -119,14 +119,7 @@ def _turned(block: list[int], angles: list[float]) -> list[int]:
     return block[k:] + block[:k]
 
 
-def _ordered(draft: Draft, order: list[int], names: list[str]) -> Diagram:
+def _ordered(draft: Draft, order: list[int]) -> Diagram:
     """The diagram with its ends in this order."""
-    m = len(order)
-    place = {end: k - m for k, end in enumerate(order)}
-    n = len(draft.mate) - m
-    mate = [place.get(p, p) for p in draft.mate[:n]] + [
-        place.get(draft.mate[p], draft.mate[p]) for p in order
-    ]
-    starts = [place.get(s, s) for s in draft.starts]
-    outer = [p for p in draft.outer if p >= 0]  # a piece with ends has its outer faces around them
-    return Diagram.assemble(mate, starts, [names[end] for end in order], outer=outer)
+    draft.outer = [p for p in draft.outer if p >= 0]  # a piece with ends has its outer faces around them
+    return draft.freeze(order)

@@ -8,10 +8,10 @@ not change where a drawing is changed by moves that keep every crossing's sign, 
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from heapq import heappop, heappush
 from itertools import product
 
 from torsade.centerline import Centerline
@@ -30,6 +30,7 @@ from torsade.topology.moves import (
 )
 from torsade.topology.projection import project
 from torsade.topology.seifert import turning
+from torsade.topology.swing import swings
 
 __all__ = [
     "Face",
@@ -161,7 +162,7 @@ class Range:
     """Gamma over drawings of one tangle: least and greatest value, how many drawings, and whether all.
 
     drawings counts those with the least number of crossings found; complete is False when the search was
-    stopped at its limit.
+    stopped at its limit before it had gone wherever its moves lead.
     """
 
     least: float
@@ -172,11 +173,12 @@ class Range:
 
 
 def circulation_range(
-    diagram: Diagram, pulled: str | Iterable[str] | None = None, extra: int = 2, limit: int = 2000
+    diagram: Diagram, pulled: str | Iterable[str] | None = None, extra: int = 1, limit: int = 2000
 ) -> Range:
-    """Gamma over the drawings with fewest crossings that Reidemeister moves reach, ends in place.
+    """Gamma over the drawings with fewest crossings that moves reach, ends swinging freely outside.
 
-    Swinging a free end over the whole tangle to another place outside would give more; it is not done.
+    The moves are those of Reidemeister, and `swings` of the ends: a rope is the same bend wherever its tails
+    lie. Drawings with fewer crossings are looked at first.
 
     Args:
         diagram: where to start.
@@ -186,17 +188,16 @@ def circulation_range(
     """
     begun = diagram if pulled is None else diagram.pulled(pulled)
     found = {canonical_form(begun, plane=True): begun}
-    queue, looked = deque([begun]), 0
+    queue, looked = [(begun.n_crossings, 0, begun)], 0
     fewest = begun.n_crossings
     while queue and looked < limit:
-        drawing = queue.popleft()
+        drawing = heappop(queue)[2]
         looked += 1
         for new in _moved(drawing, fewest + extra):
             form = canonical_form(new, plane=True)
             if form not in found:
+                heappush(queue, (new.n_crossings, len(found), new))
                 found[form] = new
-                # Drawings with fewer crossings are looked at first.
-                (queue.append if new.n_crossings >= drawing.n_crossings else queue.appendleft)(new)
                 fewest = min(fewest, new.n_crossings)
     minimal = [d for d in found.values() if d.n_crossings == fewest]
     gamma = [state(d).gamma for d in minimal]
@@ -211,6 +212,7 @@ def _moved(diagram: Diagram, most: int) -> Iterator[Diagram]:
         yield remove_bigon(diagram, dart)
     for dart in triangles(diagram):
         yield slide_triangle(diagram, dart)
+    yield from swings(diagram, most)
     if diagram.n_crossings + 2 <= most:
         for dart, other in fingers(diagram):
             yield add_bigon(diagram, dart, other, over=True)

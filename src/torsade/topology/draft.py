@@ -38,14 +38,19 @@ class Draft:
         """A draft of what is not a diagram yet, as for `Diagram.assemble`."""
         return cls(Diagram(tuple(mate), tuple(ends), tuple(starts), tuple(outer)))
 
-    def freeze(self) -> Diagram:
-        """The diagram as it stands; crossings keep their order."""
+    def freeze(self, order: Sequence[int] | None = None) -> Diagram:
+        """The diagram as it stands; crossings keep their order.
+
+        Args:
+            order: the ends counterclockwise around the drawing, if they are to be moved.
+        """
         m = len(self.ends)
+        tips = range(-m, 0) if order is None else order
         used = [p for p in range(len(self.mate) - m) if self.mate[p] != p]
-        new = {p: p for p in (*range(-m, 0), CIRCLE)} | {p: k for k, p in enumerate(used)}
-        mate = [new[self.mate[p]] for p in (*used, *range(-m, 0))]
+        new = {p: k - m for k, p in enumerate(tips)} | {CIRCLE: CIRCLE} | {p: k for k, p in enumerate(used)}
+        mate = [new[self.mate[p]] for p in (*used, *tips)]
         starts, outer = [new[p] for p in self.starts], [new[p] for p in self.outer]
-        return Diagram.assemble(mate, starts, self.ends, outer=outer)
+        return Diagram.assemble(mate, starts, [self.ends[p] for p in tips], outer=outer)
 
     # --- looking around
 

@@ -33,7 +33,7 @@ from torsade.topology.invariants import Code, oriented
 from torsade.topology.links import match_link
 from torsade.topology.lookup import Match, match_knot
 from torsade.topology.names import prime_factors, split_union, sum_name
-from torsade.topology.projection import project
+from torsade.topology.projection import project, spiral
 from torsade.topology.simplify import simplify
 
 __all__ = [
@@ -76,7 +76,7 @@ def identify(diagram: Diagram, patience: int = 100) -> Identity:
 
     Args:
         diagram: of a knot or a link.
-        patience: how long to look for fewer crossings, as in `simplify`.
+        patience: how long to look for fewer crossings, as in `simplify`, where the name is not certain.
 
     Raises:
         TorsadeError: the diagram has open strands.
@@ -86,8 +86,12 @@ def identify(diagram: Diagram, patience: int = 100) -> Identity:
             f"the diagram has ends {' '.join(diagram.ends)}; only closed curves are knots: close it first, "
             "or use `identify_open` on a curve"
         )
-    simpler = simplify(diagram, patience)
-    return identify_pd(to_pd(simpler.without_circles()), simpler.circles)
+    simpler = simplify(diagram, patience=0)
+    found = identify_pd(to_pd(simpler.without_circles()), simpler.circles)
+    if found.certain and not found.reason:
+        return found
+    fewest = simplify(simpler, patience)
+    return identify_pd(to_pd(fewest.without_circles()), fewest.circles)
 
 
 def identify_curves(curves: Sequence[ArrayLike]) -> Identity:
@@ -150,19 +154,11 @@ def identify_open(x: ArrayLike, directions: int = 100, seed: int = 0) -> OpenIde
     project([nodes])  # refuses what is no curve
     size = 10.0 * float(np.ptp(nodes, axis=0).max())
     counts: Counter[str] = Counter()
-    for u in _spread(directions, seed):
+    turn = Rotation.random(rng=np.random.default_rng(seed)).as_matrix()
+    for u in spiral(directions) @ turn:
         closed = np.concatenate([nodes, nodes[-1:] + size * u, nodes[:1] + size * u])
         counts[str(identify(project([closed], True, direction=_beside(u)).diagram, patience=20))] += 1
     return OpenIdentity({name: n / directions for name, n in counts.most_common()}, directions)
-
-
-def _spread(n: int, seed: int) -> NDArray[np.float64]:
-    """n unit vectors, shape (n, 3), evenly spread on a spiral over the sphere, which is turned at random."""
-    z = 1 - (2 * np.arange(n) + 1) / n
-    angle = np.pi * (3 - np.sqrt(5)) * np.arange(n)
-    r = np.sqrt(1 - z * z)
-    spiral = np.stack([r * np.cos(angle), r * np.sin(angle), z], axis=1)
-    return np.asarray(spiral @ Rotation.random(rng=np.random.default_rng(seed)).as_matrix())
 
 
 def _beside(u: NDArray[np.float64]) -> NDArray[np.float64]:

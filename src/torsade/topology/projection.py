@@ -19,7 +19,7 @@ from torsade.topology._crossings import TOLERANCE, Degenerate, Polylines, View, 
 from torsade.topology._leads import lead_out
 from torsade.topology.diagram import CIRCLE, Diagram
 
-__all__ = ["Projection", "project"]
+__all__ = ["Projection", "clearest", "project", "spiral"]
 
 FloatArray = NDArray[np.float64]
 IndexArray = NDArray[np.intp]
@@ -101,6 +101,29 @@ def project(
         f"{_TRIES} directions show no clear drawing, the last because {refused[-1]}; nodes may repeat or "
         f"edges lie on each other to within {TOLERANCE:g} of their length: move them apart"
     )
+
+
+def clearest(
+    strands: Sequence[ArrayLike], closed: bool | Sequence[bool] = False, directions: int = 200
+) -> Projection:
+    """The view with fewest crossings, among directions evenly spread over the sphere, z the first.
+
+    Crossings made to lead out ends count too. Of several such views the first is taken.
+
+    Args:
+        strands, closed: as in `project`.
+        directions: how many.
+    """
+    views = (project(strands, closed, d) for d in [np.array([0.0, 0.0, 1.0]), *spiral(directions)])
+    return min(views, key=lambda seen: seen.diagram.n_crossings)
+
+
+def spiral(n: int) -> FloatArray:
+    """n unit vectors, shape (n, 3), evenly spread over the sphere on a spiral about z."""
+    k = np.arange(n)
+    z = 1 - (2 * k + 1) / n
+    r = np.sqrt(1 - z * z)
+    return np.stack([r * np.cos(k * _GOLDEN), r * np.sin(k * _GOLDEN), z], axis=1)
 
 
 def _directions(direction: ArrayLike | None) -> Iterator[FloatArray]:

@@ -8,6 +8,7 @@
 - `8*2:.20`: a basic polyhedron, here 8*, with tangles for its vertices; a colon stands for two points,
   and what is left out is 1. 6* need not be written; `.2.20` begins with a point and is 6**, the same
   polyhedron with its vertices in another order. Known are 6*, 6**, 8*, two vertices of 9*, and 10* bare.
+  A minus before the polyhedron's name gives the mirror image of all.
 
 A positive number twists so that the upper strand rises to the right, as `torsade.topology.tangle.integer`.
 """
@@ -168,6 +169,8 @@ def _less_one(twists: list[int]) -> Diagram:
 
 def _polyhedron(text: str, code: str) -> Diagram:
     """A basic polyhedron with tangles for its vertices."""
+    if re.match(r"-\d+\*", text):
+        return _polyhedron(text[1:], code).mirror()
     found = re.fullmatch(r"(\d+\*+)?([^*]*)", text)
     name = found[1] or ("6**" if text.startswith((".", ":")) else "6*") if found else ""
     if not found or name not in POLYHEDRA:
