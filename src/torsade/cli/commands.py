@@ -60,7 +60,7 @@ def demo(out: str, json: bool) -> int:
         advice += [
             "Next, compare a knot that slips:",
             "  torsade run prison-escape --knot thief --plot thief.png",
-            "or pull your own, two strands in a CSV file:",
+            "or pull your own, two strands in a file (CSV, XYZ, OBJ, VECT, NPZ):",
             "  torsade run prison-escape --centerline MINE.csv --out mine.zarr",
         ]
         print("\n".join(advice))

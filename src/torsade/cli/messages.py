@@ -6,6 +6,7 @@ import difflib
 import re
 import sys
 from collections.abc import Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -13,8 +14,22 @@ if TYPE_CHECKING:
 
 __all__ = ["parse_error", "say"]
 
-TOPOLOGY_OPTIONS = ("--pulled", "--drawings", "--length-unit")
-"""Options of `torsade topology` that take a value."""
+VALUED = MappingProxyType(
+    {
+        "topology": ("--pulled", "--drawings", "--direction", "--length-unit"),
+        "convert": ("--length-unit", "--smooth", "--spacing", "--every"),
+    }
+)
+"""Options that take a value, of commands that are not made from specifications."""
+
+SWITCHES = MappingProxyType({"topology": ("--json",), "convert": ("--json", "--overwrite")})
+
+NOTHING_GIVEN = MappingProxyType(
+    {
+        "topology": "nothing is given; give a name such as reef or 5_1, a code, or a file of curves",
+        "convert": "convert takes two files; give one to read and one to write, such as scan.xyz knot.csv",
+    }
+)
 
 
 def say(message: str) -> None:
@@ -30,13 +45,15 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
     token = getattr(getattr(error, "token", None), "keyword", None)
     if kind == "UnknownOptionError" and token:
         return _unknown_option(str(token), arguments)
-    if arguments[:1] == ["topology"]:
-        return _about_topology(kind, unused, arguments)
+    if arguments and arguments[0] in VALUED:
+        return _about_files(kind, unused, arguments)
     if kind == "UnknownCommandError" or (kind == "UnusedCliTokensError" and arguments[:1] != ["run"]):
         return _unknown_command(unused[0] if unused else arguments[0], arguments)
     if kind == "UnusedCliTokensError":
         if unused[0] in arguments[2:3]:
-            option = "--centerline" if unused[0].endswith(".csv") else "--knot"
+            from torsade.files import SUFFIXES
+
+            option = "--centerline" if unused[0].lower().endswith(SUFFIXES) else "--knot"
             return f"{unused[0]!r} comes without its option; did you mean {option} {unused[0]}?"
         return (
             f"{unused[0]!r} belongs to no option; give every value after its option, and quote values with "
@@ -51,15 +68,20 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
     return text.replace(". ", "; ") + "; see torsade --help"
 
 
-def _about_topology(kind: str, unused: Sequence[str], arguments: Sequence[str]) -> str:
-    """What `torsade topology` cannot read, other than unknown options."""
-    if kind == "MissingArgumentError" and arguments[-1] in TOPOLOGY_OPTIONS:
+def _about_files(kind: str, unused: Sequence[str], arguments: Sequence[str]) -> str:
+    """What `torsade topology` and `torsade convert` cannot read, other than unknown options."""
+    command = arguments[0]
+    if kind == "MissingArgumentError" and arguments[-1] in VALUED[command]:
         return f"{arguments[-1]} has no value; give one after it, such as {arguments[-1]} VALUE"
     if kind == "RepeatArgumentError":
         return "an option is given more than once; give each once"
-    if unused:
+    if unused and command == "topology":
         return f"{unused[0]!r} comes after what the command is about; quote names and codes that have spaces"
-    return "nothing is given; give a name such as reef or 5_1, a code, or a CSV file"
+    if unused and unused[0].startswith("--"):
+        return _unknown_option(unused[0].partition("=")[0], arguments)
+    if unused:
+        return f"{unused[0]!r} comes after both files; give one to read and one to write"
+    return NOTHING_GIVEN[command]
 
 
 def _unknown_option(option: str, arguments: Sequence[str]) -> str:
@@ -71,9 +93,9 @@ def _unknown_option(option: str, arguments: Sequence[str]) -> str:
     if arguments[:1] == ["demo"]:
         known = ["--out", "--json", "--help"]
         command = "torsade demo"
-    elif arguments[:1] == ["topology"]:
-        known = [*TOPOLOGY_OPTIONS, "--json", "--help"]
-        command = "torsade topology"
+    elif arguments and arguments[0] in VALUED:
+        known = [*VALUED[arguments[0]], *SWITCHES[arguments[0]], "--help"]
+        command = f"torsade {arguments[0]}"
     elif arguments[:1] == ["run"] and len(arguments) > 1 and arguments[1] in PROTOCOLS:
         spec = PROTOCOLS[arguments[1]]
         name = option.lstrip("-").replace("-", "_")
@@ -96,7 +118,11 @@ def _unknown_command(word: str, arguments: Sequence[str]) -> str:
         return f"there is no protocol {word!r}; {hint}choose one of {', '.join(PROTOCOLS)}"
     if word in PROTOCOLS:
         return f"{word!r} is a protocol; give torsade run {word}"
-    near = difflib.get_close_matches(word, ["demo", "run", "topology", "--help", "--version"], n=1)
-    hint = f"did you mean {near[0]!r}?" if near else "choose demo, run or topology, or see torsade --help"
+    near = difflib.get_close_matches(word, ["convert", "demo", "run", "topology", "--help", "--version"], n=1)
+    hint = (
+        f"did you mean {near[0]!r}?"
+        if near
+        else "choose convert, demo, run or topology, or see torsade --help"
+    )
     what = "option" if word.startswith("-") else "command"
     return f"there is no {what} {word!r}; {hint}"

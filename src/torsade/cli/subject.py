@@ -9,8 +9,9 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from torsade.centerline import Centerline, read_csv
+from torsade.centerline import Centerline
 from torsade.errors import TorsadeError, quoted
+from torsade.files import SUFFIXES, read_centerline
 from torsade.knots.finding import interpret
 from torsade.topology.diagram import Diagram
 from torsade.topology.projection import Projection, clearest, project
@@ -55,10 +56,11 @@ def subject(given: str, length_unit: str = "m", direction: str | None = None) ->
     """
     text = given.strip()
     if not text:
-        raise TorsadeError("nothing is given; give a name such as reef or 5_1, a code, or a CSV file")
+        raise TorsadeError("nothing is given; give a name such as reef or 5_1, a code, or a file of curves")
     if re.match(r"--?[a-z]", text):
         raise TorsadeError(f"topology has no option {quoted(text)}; see torsade topology --help")
-    if text.lower().endswith(".csv") or "/" in text or Path(text).is_file():
+    # A file named reef does not stand in the way of the reef.
+    if text.lower().endswith(SUFFIXES) or "/" in text or _is_other_file(text):
         return _file(given, length_unit, direction)
     if direction is not None:
         raise TorsadeError(
@@ -69,9 +71,14 @@ def subject(given: str, length_unit: str = "m", direction: str | None = None) ->
     return Subject(given, entry.kind, entry.title, entry.diagram, pulled, entry.pulls)
 
 
+def _is_other_file(text: str) -> bool:
+    """Whether a text is the name of a file of another kind, to be told so."""
+    return re.fullmatch(r"[^\s]{1,200}\.\w{1,9}", text) is not None and Path(text).is_file()
+
+
 def _file(path: str, unit: str, direction: str | None) -> Subject:
     along = None if direction in (None, "fewest") else _vector(str(direction))
-    centerline = read_csv(path, unit)
+    centerline = read_centerline(path, unit)
     look = clearest if direction == "fewest" else partial(project, direction=along)
     seen = look(centerline.strands, centerline.closed)
     return Subject(path, "centerline", "centerline", seen.diagram, centerline=centerline, projection=seen)

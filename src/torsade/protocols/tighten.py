@@ -38,7 +38,7 @@ class Tighten(Spec):
     knot: str | None = Field(None, description="Built-in knot in one strand: overhand.")
     centerline: str | None = Field(
         None,
-        description="CSV file of one strand, columns strand,x,y,z with strand 0, in place of a knot.",
+        description="File of one strand (.csv, .xyz, .obj, .vect, .npz or .npy), in place of a knot.",
     )
     material: str = Field(
         "optomechanical", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
@@ -61,16 +61,16 @@ class Tighten(Spec):
 
     @model_validator(mode="after")
     def _bearable(self) -> Tighten:
-        self.check_shape('give a knot, "overhand", or a centerline, a CSV file of one strand')
+        self.check_shape('give a knot, "overhand", or a centerline, a file of one strand')
         self.check_strain(self.force)
         return self
 
     def configuration(self) -> Centerline:
         """One open strand, checked, at the resolution of the run."""
-        from torsade.protocols.shapes import check_built, read_centerline
+        from torsade.protocols.shapes import check_built, open_strands
 
         if self.knot is None:
-            return read_centerline(str(self.centerline), self, 1, "tighten pulls one strand by both its ends")
+            return open_strands(str(self.centerline), self, 1, "tighten pulls one strand by both its ends")
         from torsade.knots.overhand import overhand
 
         return check_built(overhand(self.h, spacing=self.node_spacing), self.h)
