@@ -286,7 +286,8 @@ class Diagram(PlanarMap):
         mate = [0] * len(self.mate)
         for p in self.ports:
             mate[shifted(p)] = shifted(self.mate[p])
-        return Diagram.assemble(mate, map(shifted, self.starts), self.ends, outer=map(shifted, self.outer))
+        outer = (shifted(self.faces[f][0]) for f in sorted(self.outer_faces) if min(self.faces[f]) >= 0)
+        return Diagram.assemble(mate, map(shifted, self.starts), self.ends, outer=outer)
 
     def reflected(self) -> Diagram:
         """The mirror image in a line of the drawing: ends come clockwise, upper strands stay above."""
