@@ -27,6 +27,7 @@ from torsade.knots.spread import Laws, Strands, spread
 from torsade.topology.canonical import canonical_form
 from torsade.topology.diagram import CIRCLE, Diagram, strand_name
 from torsade.topology.projection import project
+from torsade.topology.simplify import untwisted
 
 __all__ = ["CLEARANCE", "H_KAPPA", "BuiltKnot", "build"]
 
@@ -42,10 +43,15 @@ LEAD = 16.0  # [radii]
 LEAD_RANGE = (5.0, 1e4)  # [radii]
 TAILS = 2.5  # lengths of free ends [leads]
 
-_LAWS = Laws(stiffness=1.0, hard_stiffness=100.0, springs=20.0, distance=2.25, bend_radius=2.4)
-_COARSE_STEPS, _FINE_STEPS = 1000, 600
+_LAWS = Laws(tension=1.0, stiffness=1.0, hard_stiffness=100.0, springs=20.0, distance=2.25, bend_radius=2.4)
+_LEVELS = (
+    (_LAWS._replace(tension=0.0), None, 150),  # room for what is drawn small
+    (_LAWS, None, 1000),
+    (_LAWS, 0.5, 600),
+)
+"""Laws, edges of nodes newly set [radii], and steps."""
+
 _REST = 1e-3  # spreading ends when no node moves farther in a step [radii]
-_FINE = 0.5  # edges of the finer of two levels [radii]
 _SMOOTHING = 0.3  # what is shorter is noise of nodes against nodes [radii]
 _SAMPLED = 0.125  # edges of a curve from which all nodes are taken [radii]
 _GAP = 4.0  # between pieces side by side, beyond what they reach [radii]
@@ -156,7 +162,7 @@ def _built(
     pulled: str | None,
 ) -> BuiltKnot:
     """`build` of arguments that are checked; lengths in radii. The outer faces are told apart by `outer`."""
-    drawn = _standing(diagram)
+    drawn = _standing(untwisted(diagram))
     closed = tuple(not drawn.is_open(k) for k in range(drawn.n_strands))
     reach, shapes = _shapes(drawn, drawn.outer, pulled)
     make = _Maker(drawn, shapes, closed, reach, pulled, spacing)
@@ -316,7 +322,7 @@ def _spread(diagram: Diagram, strands: list[int], angles: dict[str, float]) -> l
     seen = project(x, closed).diagram
     if canonical_form(seen) != canonical_form(_usual(_piece(diagram, strands))):
         raise TorsadeError("the drawing made of this diagram shows another one; simplify the diagram first")
-    for spacing, steps in ((None, _COARSE_STEPS), (_FINE, _FINE_STEPS)):
+    for laws, spacing, steps in _LEVELS:
         if spacing is not None:
             x = [curve.resample(c, spacing=spacing, closed=o) for c, o in zip(x, closed, strict=True)]
         first = np.concatenate([[0], np.cumsum([len(c) for c in x])]).astype(np.int64)
@@ -326,7 +332,7 @@ def _spread(diagram: Diagram, strands: list[int], angles: dict[str, float]) -> l
             if not is_closed:
                 held[[first[k], first[k + 1] - 1]] = True
         number = np.repeat(np.arange(len(x)), np.diff(first))
-        spread(_LAWS, Strands(first, np.array(closed), number, held), nodes, steps, _REST)
+        spread(laws, Strands(first, np.array(closed), number, held), nodes, steps, _REST)
         x = np.split(nodes, first[1:-1])
     fine = [curve.resample(c, spacing=_SAMPLED, closed=o) for c, o in zip(x, closed, strict=True)]
     return [curve.smooth(c, _SMOOTHING, o) for c, o in zip(fine, closed, strict=True)]

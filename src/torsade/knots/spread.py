@@ -3,10 +3,10 @@
 Nodes x (n, 3), in radii of the fiber, move towards balance of these forces, the tension being one:
 
 - along an edge e, 1 + `EVEN` (|e|/l - 1): the tension, which shortens strands, larger in edges longer than
-  the mean l, so that nodes are spread evenly;
+  their strand's mean l, so that nodes are spread evenly;
 - against bending, from the energy sum B |d|^2/2l, d being the difference of the unit tangents at a node. Where
   the curvature, |d| over the mean of both edges, exceeds 1/rho, the excess counts with B_hard;
-- springs of energy K l^2 (R - r)^2/2 between nodes nearer than R, the distance that strands keep. Nodes of one
+- springs of energy K l l' (R - r)^2/2 between nodes nearer than R, the distance that strands keep. Nodes of one
   strand are left out if nearer along it than the arc of radius rho and chord R.
 
 **No strand passes through another.** In a step every node moves less than half the distance of each edge at
@@ -46,9 +46,14 @@ LOOP = 0.5
 """Loops of less than this times the smallest radius of bending are pushed open."""
 
 
-class Laws(NamedTuple):
-    """B and B_hard [radii^2], K [1/radii^3], R and rho [radii] of the forces, in units of the tension."""
+FINEST = 0.5
+"""Edges shorter than this repel as if they were so long: what begins small gets room [radii]."""
 
+
+class Laws(NamedTuple):
+    """Tension, B and B_hard [radii^2], K [1/radii^3], R and rho [radii] of the forces, in units of the tension."""
+
+    tension: float
     stiffness: float
     hard_stiffness: float
     springs: float
@@ -68,16 +73,16 @@ class Strands(NamedTuple):
     held: Bools
 
 
-def mean_edge(s: Strands, x: Floats) -> float:
-    """Mean length of an edge [radii]."""
-    total = 0.0
-    count = 0
+def strand_lengths(s: Strands, x: Floats, length: Floats, edge: Floats) -> None:
+    """Lengths of the strands and their mean edges [radii], into length and edge (n_strands,)."""
+    length[:] = 0.0
     for i in range(x.shape[0]):
         j = _after(s, i)
         if j >= 0:
-            total += _distance(x, i, j)
-            count += 1
-    return total / count
+            length[s.strand[i]] += _distance(x, i, j)
+    for k in range(length.shape[0]):
+        n = s.first[k + 1] - s.first[k]
+        edge[k] = length[k] / (n if s.closed[k] else n - 1)
 
 
 def _distance(x: Floats, i: Index, j: Index) -> float:
@@ -135,10 +140,9 @@ def room_to_move(s: Strands, x: Floats, pairs: Ints, room: Floats) -> None:
 
 
 def _add_springs(
-    laws: Laws, s: Strands, x: Floats, pairs: Ints, l: float, force: Floats, diagonal: Floats
+    laws: Laws, s: Strands, x: Floats, pairs: Ints, edge: Floats, force: Floats, diagonal: Floats
 ) -> None:
     """Forces of the springs, and twice the stiffness of those that act at a node into diagonal."""
-    weight = laws.springs * l * l
     reach = laws.distance
     rho = LOOP * laws.bend_radius
     for n in range(pairs.shape[0]):
@@ -150,6 +154,7 @@ def _add_springs(
         squared = dx * dx + dy * dy + dz * dz
         if squared >= reach * reach:
             continue
+        l = edge[s.strand[i]]
         along = _apart(s, i, j) * l
         least = reach
         if along < math.pi * rho:
@@ -157,6 +162,7 @@ def _add_springs(
         r = math.sqrt(squared)
         if along < 1.5 * l or r >= least:
             continue
+        weight = laws.springs * max(FINEST, l) * max(FINEST, edge[s.strand[j]])
         push = weight * (least - r) / r
         force[i, 0] -= push * dx
         force[i, 1] -= push * dy
@@ -168,26 +174,23 @@ def _add_springs(
         diagonal[j] += 2.0 * weight
 
 
-def find_tension(laws: Laws, s: Strands, x: Floats, tension: Floats) -> None:
+def find_tension(laws: Laws, s: Strands, length: Floats, tension: Floats) -> None:
     """Tension (n_strands,): one, and less in a closed strand about to get shorter than a circle of radius rho."""
-    tension[:] = 0.0
-    for i in range(x.shape[0]):
-        j = _after(s, i)
-        if j >= 0:
-            tension[s.strand[i]] += _distance(x, i, j)
     for k in range(tension.shape[0]):
-        turns = tension[k] / (2.0 * math.pi * laws.bend_radius)
-        tension[k] = max(-1.0, min(1.0, 5.0 * (turns - 1.0))) if s.closed[k] else 1.0
+        turns = length[k] / (2.0 * math.pi * laws.bend_radius)
+        slack = max(-1.0, min(1.0, 5.0 * (turns - 1.0))) if s.closed[k] else 1.0
+        tension[k] = laws.tension * slack if slack > 0.0 else slack
 
 
 def _add_tension(
-    s: Strands, x: Floats, l: float, tension: Floats, force: Floats, diagonal: Floats, next1: Floats
+    s: Strands, x: Floats, edge: Floats, tension: Floats, force: Floats, diagonal: Floats, next1: Floats
 ) -> None:
     """Forces of the tension (n_strands,); their matrix into diagonal and next1 (n_nodes,), couplings to the next."""
     for i in range(x.shape[0]):
         j = _after(s, i)
         if j < 0:
             continue
+        l = edge[s.strand[i]]
         e = _distance(x, i, j)
         t = (tension[s.strand[i]] + EVEN * max(-0.22, e / l - 1.0)) / e
         m = max(t, EVEN_BOUND / l)
@@ -204,7 +207,7 @@ def _add_bending(
     laws: Laws,
     s: Strands,
     x: Floats,
-    l: float,
+    edge: Floats,
     tension: Floats,
     force: Floats,
     diagonal: Floats,
@@ -231,6 +234,7 @@ def _add_bending(
             hard = laws.hard_stiffness * max(0.0, tension[s.strand[j]])
             m += hard
             bend += hard * (1.0 - allowed / math.sqrt(squared))
+        l = edge[s.strand[i]]
         m /= l * l * l
         bend /= l * l * l
         diagonal[i] += m
@@ -354,22 +358,23 @@ def spread(laws: Laws, s: Strands, x: Floats, most: Index, tolerance: float) -> 
     diagonal, next1, next2 = np.empty(n), np.empty(n), np.empty(n)
     w1, w2, room = np.empty(n), np.empty(n), np.empty(n)
     pairs = np.empty((0, 2), np.int64)
-    tension = np.empty(s.closed.shape[0])
+    n_strands = s.closed.shape[0]
+    tension, length, edge = np.empty(n_strands), np.empty(n_strands), np.empty(n_strands)
     moved = 1e300
     for step in range(most):
         if 4.0 * moved > SKIN:
             longest = _midpoints(s, x, mid)
             pairs = near_points(mid, max(laws.distance, 2.0 * LARGEST_MOVE) + longest + SKIN)
             moved = 0.0
-        l = mean_edge(s, x)
+        strand_lengths(s, x, length, edge)
         for i in range(n):
             diagonal[i], next1[i], next2[i] = 1e-9, 0.0, 0.0
             for c in range(3):
                 force[i, c] = 0.0
-        find_tension(laws, s, x, tension)
-        _add_bending(laws, s, x, l, tension, force, diagonal, next1, next2)
-        _add_tension(s, x, l, tension, force, diagonal, next1)
-        _add_springs(laws, s, x, pairs, l, force, diagonal)
+        find_tension(laws, s, length, tension)
+        _add_bending(laws, s, x, edge, tension, force, diagonal, next1, next2)
+        _add_tension(s, x, edge, tension, force, diagonal, next1)
+        _add_springs(laws, s, x, pairs, edge, force, diagonal)
         room_to_move(s, x, pairs, room)
         downhill = 0.0
         for i in range(n):
@@ -394,5 +399,5 @@ def spread(laws: Laws, s: Strands, x: Floats, most: Index, tolerance: float) -> 
 compile_kernels(
     __name__,
     inline=("_distance", "_after", "_apart"),
-    owning=("spread", "mean_edge", "room_to_move", "solve_band", "_add_springs", "_add_tension", "find_tension", "_add_bending", "_midpoints", "_stopped"),
+    owning=("spread", "strand_lengths", "room_to_move", "solve_band", "_add_springs", "_add_tension", "find_tension", "_add_bending", "_midpoints", "_stopped"),
 )
