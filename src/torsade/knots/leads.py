@@ -16,6 +16,8 @@ FloatArray = NDArray[np.float64]
 
 _BEND = 10.0  # reach of the bend that leads an end to its line [radii]
 _SHARE = 0.7  # of a short lead that this bend may take
+_SLOPE = 1.5  # least reach of a bend that leads to an axis, over the distance from it
+_STRAIGHT = 2.0  # part at the end, even of a lead too short for its bend [radii]
 _SAMPLES = 64
 
 
@@ -59,7 +61,7 @@ def way_out(x: FloatArray, angle: float, reach: float, on_axis: bool, length: fl
         angle: in the plane, of the straight part [rad].
         reach: of the knot [radii].
         on_axis: whether the straight part lies on a line through the origin.
-        length: of all that is added [radii].
+        length: of all that is added [radii]; more where the bend takes more.
     """
     begin = x[-1]
     ahead = (x[-1] - x[-2]) / np.linalg.norm(x[-1] - x[-2])
@@ -67,6 +69,8 @@ def way_out(x: FloatArray, angle: float, reach: float, on_axis: bool, length: fl
     if abs(out[1]) < 1e-12:
         out = np.array([math.copysign(1.0, out[0]), 0.0, 0.0])
     bend = min(_BEND, _SHARE * length)
+    if on_axis:
+        bend = max(bend, _SLOPE * float(np.linalg.norm(np.cross(begin, out))))
     if on_axis:
         end = (reach + bend) * out
     else:
@@ -76,7 +80,7 @@ def way_out(x: FloatArray, angle: float, reach: float, on_axis: bool, length: fl
     p = np.array([begin, begin + arm * ahead, end - arm * out, end])
     u = (np.arange(_SAMPLES + 1) / _SAMPLES)[:, None]
     curve = (1 - u) ** 3 * p[0] + 3 * u * (1 - u) ** 2 * p[1] + 3 * u**2 * (1 - u) * p[2] + u**3 * p[3]
-    rest = length - float(edge_lengths(curve).sum())
+    rest = max(length - float(edge_lengths(curve).sum()), _STRAIGHT)
     count = max(1, math.ceil(rest / bend * _SAMPLES))
     line = end + rest * np.arange(1, count + 1)[:, None] / count * out
     return np.concatenate([curve[1:], line])

@@ -46,8 +46,8 @@ LOOP = 0.5
 """Loops of less than this times the smallest radius of bending are pushed open."""
 
 
-FINEST = 0.5
-"""Edges shorter than this repel as if they were so long: what begins small gets room [radii]."""
+FINEST = 0.25
+"""Edges that are shorter in the mean count as so long, which lets strands grow that begin small [radii]."""
 
 
 class Laws(NamedTuple):
@@ -74,7 +74,7 @@ class Strands(NamedTuple):
 
 
 def strand_lengths(s: Strands, x: Floats, length: Floats, edge: Floats) -> None:
-    """Lengths of the strands and their mean edges [radii], into length and edge (n_strands,)."""
+    """Lengths of the strands and their mean edges, at least `FINEST`, into length and edge (n_strands,) [radii]."""
     length[:] = 0.0
     for i in range(x.shape[0]):
         j = _after(s, i)
@@ -82,7 +82,7 @@ def strand_lengths(s: Strands, x: Floats, length: Floats, edge: Floats) -> None:
             length[s.strand[i]] += _distance(x, i, j)
     for k in range(length.shape[0]):
         n = s.first[k + 1] - s.first[k]
-        edge[k] = length[k] / (n if s.closed[k] else n - 1)
+        edge[k] = max(FINEST, length[k] / (n if s.closed[k] else n - 1))
 
 
 def _distance(x: Floats, i: Index, j: Index) -> float:
@@ -162,7 +162,7 @@ def _add_springs(
         r = math.sqrt(squared)
         if along < 1.5 * l or r >= least:
             continue
-        weight = laws.springs * max(FINEST, l) * max(FINEST, edge[s.strand[j]])
+        weight = laws.springs * l * edge[s.strand[j]]
         push = weight * (least - r) / r
         force[i, 0] -= push * dx
         force[i, 1] -= push * dy
