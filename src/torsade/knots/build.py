@@ -46,12 +46,12 @@ TAILS = 2.5  # lengths of free ends [leads]
 _LAWS = Laws(tension=1.0, stiffness=1.0, hard_stiffness=100.0, springs=20.0, distance=2.25, bend_radius=2.4)
 _LEVELS = (
     (_LAWS._replace(tension=0.0), None, 150),  # room for what is drawn small
-    (_LAWS, None, 1000),
-    (_LAWS, 0.5, 600),
+    (_LAWS, None, 2000),
+    (_LAWS, 0.5, 1000),
 )
 """Laws, edges of nodes newly set [radii], and steps."""
 
-_REST = 1e-3  # spreading ends when no node moves farther in a step [radii]
+_REST = 1e-4  # spreading ends when no node moves farther in a step [radii]
 _SMOOTHING = 0.3  # what is shorter is noise of nodes against nodes [radii]
 _SAMPLED = 0.125  # edges of a curve from which all nodes are taken [radii]
 _GAP = 4.0  # between pieces side by side, beyond what they reach [radii]

@@ -33,8 +33,8 @@ LARGEST_MOVE = 0.6  # [radii]
 SHARE = 0.45
 """Of its distance to others that an edge may move in a step; below a half."""
 SKIN = 1.0  # pairs are listed this much farther than they act [radii]
-MEMORY = 0.9
-"""What is kept of the last step in the next one."""
+MEMORY = 0.98
+"""Most that is kept of the last step in the next one."""
 
 
 EVEN = 4.0
@@ -327,6 +327,17 @@ def _midpoints(s: Strands, x: Floats, mid: Floats) -> float:
     return longest
 
 
+def _order(pairs: Ints) -> None:
+    """Sort pairs (n_pairs, 2), ordered by the first, by the second: sums are then those of the mirror image."""
+    for n in range(1, pairs.shape[0]):
+        i, j = pairs[n, 0], pairs[n, 1]
+        m = n - 1
+        while m >= 0 and pairs[m, 0] == i and pairs[m, 1] > j:
+            pairs[m + 1, 1] = pairs[m, 1]
+            m -= 1
+        pairs[m + 1, 1] = j
+
+
 def _stopped(x: Floats, v: Floats, held: Bools, room: Floats) -> float:
     """Shorten each row of v to less than its room, and move x by it; returns the longest move."""
     longest = 0.0
@@ -361,10 +372,12 @@ def spread(laws: Laws, s: Strands, x: Floats, most: Index, tolerance: float) -> 
     n_strands = s.closed.shape[0]
     tension, length, edge = np.empty(n_strands), np.empty(n_strands), np.empty(n_strands)
     moved = 1e300
+    gliding = 0
     for step in range(most):
         if 4.0 * moved > SKIN:
             longest = _midpoints(s, x, mid)
             pairs = near_points(mid, max(laws.distance, 2.0 * LARGEST_MOVE) + longest + SKIN)
+            _order(pairs)
             moved = 0.0
         strand_lengths(s, x, length, edge)
         for i in range(n):
@@ -385,7 +398,8 @@ def spread(laws: Laws, s: Strands, x: Floats, most: Index, tolerance: float) -> 
                 downhill += force[i, c] * v[i, c]
         for k in range(s.closed.shape[0]):
             solve_band(s.first[k], s.first[k + 1], diagonal, next1, next2, w1, w2, y)
-        memory = MEMORY if downhill > 0.0 else 0.0
+        gliding = gliding + 1 if downhill > 0.0 else 0
+        memory = min(MEMORY, gliding / (gliding + 3.0))
         for i in range(n):
             for c in range(3):
                 v[i, c] = memory * v[i, c] + y[i, c]
@@ -399,5 +413,5 @@ def spread(laws: Laws, s: Strands, x: Floats, most: Index, tolerance: float) -> 
 compile_kernels(
     __name__,
     inline=("_distance", "_after", "_apart"),
-    owning=("spread", "strand_lengths", "room_to_move", "solve_band", "_add_springs", "_add_tension", "find_tension", "_add_bending", "_midpoints", "_stopped"),
+    owning=("spread", "strand_lengths", "room_to_move", "solve_band", "_add_springs", "_add_tension", "find_tension", "_add_bending", "_midpoints", "_stopped", "_order"),
 )
