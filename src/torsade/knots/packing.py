@@ -112,13 +112,14 @@ def triangulated(diagram: Diagram, darts: Sequence[int]) -> Triangulation:
         return number.setdefault(name, len(number))  # type: ignore[arg-type]
 
     seen: set[int] = set()
+    unbounded = _unbounded(diagram, darts)
     for dart in darts:
         f = diagram.face_at[dart]
         if f in seen:
             continue
         seen.add(f)
         corners = [vertex(*name) for name in _border(diagram, dart)]
-        outside = all(p >= 0 for p in darts) and f in diagram.outer_faces
+        outside = f == unbounded
         ring = [vertex("ring", dart, i) for i in range(len(corners))]
         for i, j in zip(range(-1, len(corners) - 1), range(len(corners)), strict=True):
             triangles += [(corners[i], corners[j], ring[i]), (corners[j], ring[j], ring[i])]
@@ -130,6 +131,15 @@ def triangulated(diagram: Diagram, darts: Sequence[int]) -> Triangulation:
     flags = np.zeros(len(number), dtype=bool)
     flags[sorted(boundary)] = True
     return Triangulation(number, np.array(triangles), flags)
+
+
+def _unbounded(diagram: Diagram, darts: Sequence[int]) -> int:
+    """The face outside of a closed piece: the one named, or the first of the longest; -1 for a tangle."""
+    if min(darts) < 0:
+        return -1
+    named = [diagram.face_at[p] for p in diagram.outer if p in darts]
+    faces = [diagram.face_at[p] for p in darts]
+    return named[0] if named else max(faces, key=lambda f: len(diagram.faces[f]))
 
 
 def _border(diagram: Diagram, dart: int) -> Iterator[Vertex]:

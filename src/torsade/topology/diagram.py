@@ -286,8 +286,7 @@ class Diagram(PlanarMap):
         mate = [0] * len(self.mate)
         for p in self.ports:
             mate[shifted(p)] = shifted(self.mate[p])
-        outer = (shifted(self.faces[f][0]) for f in sorted(self.outer_faces) if min(self.faces[f]) >= 0)
-        return Diagram.assemble(mate, map(shifted, self.starts), self.ends, outer=outer)
+        return Diagram.assemble(mate, map(shifted, self.starts), self.ends, outer=map(shifted, self.outer))
 
     def reflected(self) -> Diagram:
         """The mirror image in a line of the drawing: ends come clockwise, upper strands stay above."""
