@@ -1,7 +1,7 @@
 """The catalogue of bends as diagrams: two-strand tangles by name, each with the ends that its name pulls.
 
-What is known of each lies in `catalogue/bends.json`; see the README beside it. Not all of these can be had
-as a centerline yet: `torsade.knots.bend` makes reef, thief, granny and grief.
+What is known of each lies in `catalogue/bends.json`; see the README beside it. `torsade.knots.bend` makes fibers
+of them.
 """
 
 from __future__ import annotations
@@ -19,9 +19,12 @@ from torsade.errors import TorsadeError, quoted
 from torsade.topology.codes import from_gauss
 from torsade.topology.diagram import Diagram
 
-__all__ = ["Bend", "bend_diagram", "bend_names", "bends", "find_bend"]
+__all__ = ["PULLS", "Bend", "bend_diagram", "bend_names", "bends", "find_bend", "usual_name"]
 
 STANDING = "A1B1"
+
+PULLS = ("A1B1", "A1B0", "A0B1", "A0B0")
+"""Pairs of ends: the first is clamped, the second pulled."""
 
 
 @dataclass(frozen=True)
@@ -93,6 +96,19 @@ def find_bend(name: str) -> tuple[Bend, str]:
     near = difflib.get_close_matches(plain, known, n=1, cutoff=0.7)
     hint = f"did you mean {near[0]!r}? " if near else ""
     raise TorsadeError(f"no bend is called {quoted(name)}; {hint}choose one of {', '.join(bend_names())}")
+
+
+def usual_name(name: str) -> str:
+    """The word of `bend_names` for a name or alias.
+
+    >>> usual_name("Square knot"), usual_name("Bread-bag knot")
+    ('reef', 'thief')
+
+    Raises:
+        TorsadeError: no bend is called so.
+    """
+    entry, pulled = find_bend(name)
+    return entry.name if pulled == STANDING else next(w for w, p in entry.names_of_pulls.items() if p == pulled)
 
 
 def bend_diagram(name: str) -> Diagram:

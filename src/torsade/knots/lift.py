@@ -34,8 +34,9 @@ def angles_of_ends(diagram: Diagram, pulled: str | None) -> dict[str, tuple[floa
     """For every end the angles [rad] under which its strand leaves the knot, and under which it then goes on.
 
     The end named first in `pulled` goes on along -x, the second along +x. The others leave that line by 60
-    degrees, in the order of the diagram; each beside the pulled end of its own strand where it can be. Forces of
-    equal size under the first angles balance. Without `pulled` ends leave evenly, the first along -x.
+    degrees, in the order of the diagram; where they can, they go on past the pulled end of the other strand, so
+    that their strand turns least. Forces of equal size under the first angles balance. Without `pulled` ends
+    leave evenly, the first along -x.
     """
     names = diagram.ends
     if pulled is None:
@@ -47,8 +48,8 @@ def angles_of_ends(diagram: Diagram, pulled: str | None) -> dict[str, tuple[floa
     at = around.index(second)
     below, above = around[1:at], around[at + 1 :]
     if len(below) == len(above) == 1:
-        low = TAIL if below[0][:1] == first[:1] else np.pi - TAIL
-        high = TAIL if above[0][:1] == second[:1] else np.pi - TAIL
+        low = TAIL if below[0][:1] == second[:1] else np.pi - TAIL
+        high = TAIL if above[0][:1] == first[:1] else np.pi - TAIL
         angles = {first: np.pi, below[0]: np.pi + low, second: 2 * np.pi, above[0]: 2 * np.pi + high}
         return {name: (float(a), float(a)) for name, a in angles.items()}
     if not below and not above:

@@ -46,6 +46,9 @@ LOOP = 0.5
 """Loops of less than this times the smallest radius of bending are pushed open."""
 
 
+SLACK = 0.02
+"""What is left of the stiffness of a closed strand too short to be a circle of radius rho."""
+
 FINEST = 0.25
 """Edges that are shorter in the mean count as so long, which lets strands grow that begin small [radii]."""
 
@@ -214,10 +217,7 @@ def _add_bending(
     next1: Floats,
     next2: Floats,
 ) -> None:
-    """Forces against bending; their matrix into diagonal and next1, next2 (n_nodes,), couplings along a strand.
-
-    Second differences get less by shortening, too: B_hard is less where the tension (n_strands,) is.
-    """
+    """Forces against bending; their matrix into diagonal and next1, next2 (n_nodes,), couplings along a strand."""
     for i in range(x.shape[0]):
         j = _after(s, i)
         k = _after(s, j) if j >= 0 else j
@@ -228,15 +228,16 @@ def _add_bending(
             d = x[i, c] - 2.0 * x[j, c] + x[k, c]
             squared += d * d
         allowed = _distance(x, i, j) * _distance(x, j, k) / laws.bend_radius
+        # Smaller second differences are also had by shrinking: a strand that is to grow has little stiffness.
+        taut = min(1.0, max(SLACK, tension[s.strand[j]] / max(laws.tension, SLACK)))
         m = laws.stiffness
         bend = laws.stiffness
         if squared > allowed * allowed:
-            hard = laws.hard_stiffness * max(0.0, tension[s.strand[j]])
-            m += hard
-            bend += hard * (1.0 - allowed / math.sqrt(squared))
+            m += laws.hard_stiffness
+            bend += laws.hard_stiffness * (1.0 - allowed / math.sqrt(squared))
         l = edge[s.strand[i]]
-        m /= l * l * l
-        bend /= l * l * l
+        m *= taut / (l * l * l)
+        bend *= taut / (l * l * l)
         diagonal[i] += m
         diagonal[j] += 4.0 * m
         diagonal[k] += m

@@ -50,10 +50,10 @@ class Tighten(Spec):
     def _known_knot(cls, name: str | None) -> str | None:
         if name is None:
             return None
+        from torsade.knots.bends import bend_names
         from torsade.knots.overhand import known_strand_knot
-        from torsade.knots.stacked import BENDS
 
-        if name.strip().lower() in BENDS:
+        if name.strip().lower() in bend_names():
             raise TorsadeError(
                 f"{name!r} is a bend of two strands; give torsade run prison-escape --knot {name}"
             )
