@@ -65,7 +65,7 @@ def test_a_topology_shown_is_read(line: str) -> None:
 @pytest.mark.parametrize("line", [line for line in commands() if line.split()[1] == "convert"])
 def test_a_conversion_shown_is_done(line: str, tmp_path: Path) -> None:
     _, _, given, out, *options = shlex.split(line)
-    (x,) = ts.knots.overhand("0.2 mm").strands
+    (x,) = ts.knots.strand("overhand", "0.2 mm").strands
     ts.write_centerline(ts.Centerline((1e3 * x if "mm" in options else x,)), tmp_path / given)
     done = subprocess.run(
         [sys.executable, "-m", *shlex.split(line)], capture_output=True, text=True, check=False, cwd=tmp_path

@@ -131,7 +131,7 @@ def test_topology_reads_every_format(tmp_path: Path, suffix: str) -> None:
 
 
 def test_a_noisy_scan_is_pulled_once_it_is_smoothed(tmp_path: Path) -> None:
-    (x,) = ts.knots.overhand(H).strands
+    (x,) = ts.knots.strand("overhand", H).strands
     scan = 1e3 * (x + 0.2 * H * np.random.default_rng(0).normal(size=x.shape))
     ts.write_centerline(ts.Centerline((scan,)), tmp_path / "scan.xyz")
     command = ("run", "tighten", "--centerline", "scan.xyz", "--length-unit", "mm", "--radius", "0.2 mm")

@@ -42,7 +42,10 @@ class PrisonEscape(Spec):
     }
 
     protocol: Literal["prison-escape"] = "prison-escape"
-    knot: str | None = Field(None, description="Built-in bend: reef, thief, granny or grief.")
+    knot: str | None = Field(
+        None,
+        description="Bend (reef, thief, granny, carrick, zeppelin ...), suture (5,-3), or a code of two strands.",
+    )
     centerline: str | None = Field(
         None, description="File of two strands (.csv, .xyz, .obj, .vect, .npz or .npy), in place of a knot."
     )
@@ -67,12 +70,9 @@ class PrisonEscape(Spec):
     def _known_knot(cls, name: str | None) -> str | None:
         if name is None:
             return None
-        from torsade.knots.overhand import STRAND_KNOTS
-        from torsade.knots.stacked import known_name
+        from torsade.knots.finding import known_bend
 
-        if name.strip().lower() in STRAND_KNOTS:
-            raise TorsadeError(f"{name!r} is a knot in one strand; give torsade run tighten --knot {name}")
-        return known_name(name)
+        return known_bend(name).name
 
     @field_validator("pulled")
     @classmethod
@@ -101,7 +101,7 @@ class PrisonEscape(Spec):
 
         if self.knot is None:
             return open_strands(str(self.centerline), self, 2, "prison-escape pulls two strands")
-        from torsade.knots.stacked import bend
+        from torsade.knots.tied import bend
 
         # The bend does not care which of its two ends is the clamped one.
         pulled = None if self.pulled is None else "".join(sorted((self.pulled[:2], self.pulled[2:])))
@@ -114,9 +114,9 @@ class PrisonEscape(Spec):
             if self.knot is None:
                 text = "A0B0"
             else:
-                from torsade.knots.stacked import bend
+                from torsade.knots.finding import known_bend
 
-                text = bend(self.knot, self.h).pulled
+                text = str(known_bend(self.knot).pulled or "A1B1")
         a, i, b, j = ("AB".index(c) if c in "AB" else int(c) for c in text)
         return (a, i), (b, j)
 
