@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, Group, Parameter
 
 from torsade import __version__
+from torsade.cli.knots_app import knots_app
 from torsade.errors import TorsadeError
 
 if TYPE_CHECKING:
@@ -79,6 +80,7 @@ def build(arguments: list[str]) -> App:
     app.command(_demo, name="demo", help_epilogue="", version_flags=[])
     app.command(_topology, name="topology", help_epilogue=TOPOLOGY_EXAMPLES, version_flags=[])
     app.command(_convert, name="convert", help_epilogue=CONVERT_EXAMPLES, version_flags=[])
+    app.command(knots_app())
     run = App(
         name="run",
         help="Run an experiment: prison-escape (pull a bend) or tighten (pull a knot in one strand).",
