@@ -28,7 +28,7 @@ register: Any = event.register
 njit: Any = numba.njit
 
 PACKAGE = Path(__file__).parent
-KERNEL_SOURCES = ("_compile.py", "assembly.py", "topology", "rod", "motion")
+KERNEL_SOURCES = ("_compile.py", "assembly.py", "topology", "rod", "knots/tight_kernels.py", "motion")
 
 
 def source_hash() -> str:
