@@ -3,7 +3,7 @@
 All lengths are in units of the target radius. A closed strand is a control polygon: the quadratic B-spline of
 its nodes touches every edge at its middle. On it lie two samples a node, the middle of the edge before and the
 point nearest to the node. Constraints are rows: a gap that is positive when the constraint is broken, and its
-derivative, which node row.node[k, m] moves by row.share[k, m] along row.direction[k].
+derivative: moving node row.node[k, m] along row.push[k, m] closes it.
 """
 
 from __future__ import annotations
@@ -31,13 +31,13 @@ class Loops(NamedTuple):
 
 
 class Rows(NamedTuple):
-    """Linearised constraints: node, share (m, SLOTS), direction (m, 3), gap, weight (m,); contacts come first."""
+    """Linearised constraints: node (m, SLOTS), push (m, SLOTS, 3), gap, weight (m,); contacts come first."""
 
     node: Ints
-    share: Floats
-    direction: Floats
+    push: Floats
     gap: Floats
     weight: Floats
+    contacts: int
 
 
 class Matrix(NamedTuple):
@@ -90,68 +90,70 @@ def contact_energy(p: Floats, pairs: Ints) -> float:
 
 
 def bends(x: Floats, loops: Loops, edge: Floats, kappa: Floats) -> None:
-    """By how much nodes are bent beyond curvature one, into kappa (n,): |second difference| over edge^2.
+    """By how much nodes are bent beyond curvature one, into kappa (n,).
 
-    edge (n,) is the mean edge of each node's strand, held fixed. An arc of radius one that touches two edges
-    at their middles has the second difference edge^2/sqrt(1 + edge^2/4).
+    Curvature is the second difference of nodes over the square of half their span. An arc of radius one that
+    touches two edges of the same length at their middles has sqrt(1 + edge^2/4) of it; edge (n,) is the mean edge
+    of each node's strand, held fixed.
     """
     before, after = loops.before, loops.after
     for i in range(x.shape[0]):
-        squared = 0.0
+        second, span = 0.0, 0.0
         for c in range(3):
-            squared += (x[before[i], c] - 2.0 * x[i, c] + x[after[i], c]) ** 2
-        l = edge[i] * edge[i]
-        kappa[i] = math.sqrt(squared) / l - 1.0 / math.sqrt(1.0 + 0.25 * l)
+            second += (x[before[i], c] - 2.0 * x[i, c] + x[after[i], c]) ** 2
+            span += (x[after[i], c] - x[before[i], c]) ** 2
+        kappa[i] = 4.0 * math.sqrt(second) / span - math.sqrt(1.0 + 0.25 * edge[i] ** 2)
 
 
 def contact_rows(p: Floats, pairs: Ints, loops: Loops, weight: float, rows: Rows) -> None:
     """Fill the first rows, one for each pair of samples."""
     before, after = loops.before, loops.after
-    node, share, direction, gap = rows.node, rows.share, rows.direction, rows.gap
+    node, push, gap = rows.node, rows.push, rows.gap
     for k in range(pairs.shape[0]):
         squared = 0.0
         for c in range(3):
-            direction[k, c] = p[pairs[k, 0], c] - p[pairs[k, 1], c]
-            squared += direction[k, c] ** 2
+            squared += (p[pairs[k, 0], c] - p[pairs[k, 1], c]) ** 2
         d = math.sqrt(squared)
-        for c in range(3):
-            direction[k, c] /= d
         gap[k] = 2.0 - d
         rows.weight[k] = weight
         for side in range(2):
-            sign = 1.0 - 2.0 * side
             i = pairs[k, side] // 2
             middle = pairs[k, side] % 2 == 1
-            node[k, 3 * side] = before[i]
-            node[k, 3 * side + 1] = i
-            node[k, 3 * side + 2] = after[i]
-            share[k, 3 * side] = sign * (0.125 if middle else 0.5)
-            share[k, 3 * side + 1] = sign * (0.75 if middle else 0.5)
-            share[k, 3 * side + 2] = sign * (0.125 if middle else 0.0)
+            m = 3 * side
+            node[k, m], node[k, m + 1], node[k, m + 2] = before[i], i, after[i]
+            for c in range(3):
+                n = (1.0 - 2.0 * side) * (p[pairs[k, 0], c] - p[pairs[k, 1], c]) / d
+                push[k, m, c] = (0.125 if middle else 0.5) * n
+                push[k, m + 1, c] = (0.75 if middle else 0.5) * n
+                push[k, m + 2, c] = (0.125 if middle else 0.0) * n
 
 
 def bend_rows(
-    x: Floats, loops: Loops, edge: Floats, kappa: Floats, margin: float, weight: float, first: Index, rows: Rows
+    x: Floats, loops: Loops, kappa: Floats, margin: float, weight: float, first: Index, rows: Rows
 ) -> int:
     """Fill rows from first on, one for each node bent to within margin of curvature one; returns their end."""
     before, after = loops.before, loops.after
-    node, share, direction = rows.node, rows.share, rows.direction
+    node, push = rows.node, rows.push
     k = first
     for i in range(x.shape[0]):
         if kappa[i] < -margin:
             continue
-        squared = 0.0
+        second, span = 0.0, 0.0
         for c in range(3):
-            direction[k, c] = x[before[i], c] - 2.0 * x[i, c] + x[after[i], c]
-            squared += direction[k, c] ** 2
-        for c in range(3):
-            direction[k, c] /= math.sqrt(squared)
+            second += (x[before[i], c] - 2.0 * x[i, c] + x[after[i], c]) ** 2
+            span += (x[after[i], c] - x[before[i], c]) ** 2
+        second = math.sqrt(second)
         for m in range(SLOTS):
             node[k, m] = i
-            share[k, m] = 0.0
         node[k, 0], node[k, 2] = before[i], after[i]
-        share[k, 0] = share[k, 2] = -1.0 / edge[i] ** 2
-        share[k, 1] = 2.0 / edge[i] ** 2
+        for c in range(3):
+            bend = 4.0 * (x[before[i], c] - 2.0 * x[i, c] + x[after[i], c]) / (second * span)
+            stretch = 8.0 * second * (x[after[i], c] - x[before[i], c]) / (span * span)
+            push[k, 0, c] = -bend - stretch
+            push[k, 1, c] = 2.0 * bend
+            push[k, 2, c] = -bend + stretch
+            for m in range(3, SLOTS):
+                push[k, m, c] = 0.0
         rows.gap[k] = kappa[i]
         rows.weight[k] = weight
         k += 1
@@ -160,23 +162,23 @@ def bend_rows(
 
 def derivative(rows: Rows, d: Floats, out: Floats) -> None:
     """How fast gaps close when nodes move by d (n, 3), into out (m,)."""
-    node, share, direction = rows.node, rows.share, rows.direction
+    node, push = rows.node, rows.push
     for k in range(out.shape[0]):
         total = 0.0
         for m in range(SLOTS):
             for c in range(3):
-                total += share[k, m] * direction[k, c] * d[node[k, m], c]
+                total += push[k, m, c] * d[node[k, m], c]
         out[k] = total
 
 
-def push(rows: Rows, force: Floats, out: Floats) -> None:
+def add_forces(rows: Rows, force: Floats, out: Floats) -> None:
     """Add to out (n, 3) the forces of the constraints on nodes, force (m,) at each."""
-    node, share, direction = rows.node, rows.share, rows.direction
+    node, push = rows.node, rows.push
     for k in range(force.shape[0]):
         if force[k] != 0.0:
             for m in range(SLOTS):
                 for c in range(3):
-                    out[node[k, m], c] += force[k] * share[k, m] * direction[k, c]
+                    out[node[k, m], c] += force[k] * push[k, m, c]
 
 
 def mark(loops: Loops, rows: Rows, place: Ints) -> None:
@@ -249,20 +251,53 @@ def tension_matrix(
                 _add(place, start, value, j, i, r, c, -amount)
 
 
+def bend_matrix(
+    x: Floats, loops: Loops, kappa: Floats, weight: float, place: Ints, start: Ints, value: Floats
+) -> None:
+    """Add what resists turning the second difference of a bent node: force (1 - u u)/size, u its direction.
+
+    It is the part of second derivatives that belongs to the force of the constraint, of one sign.
+    """
+    before, after = loops.before, loops.after
+    u = np.empty(3)
+    for i in range(x.shape[0]):
+        if kappa[i] <= 0.0:
+            continue
+        second, span = 0.0, 0.0
+        for c in range(3):
+            u[c] = x[before[i], c] - 2.0 * x[i, c] + x[after[i], c]
+            second += u[c] ** 2
+            span += (x[after[i], c] - x[before[i], c]) ** 2
+        s = 4.0 * weight * kappa[i] / (span * math.sqrt(second))
+        nodes = (before[i], i, after[i])
+        shares = (1.0, -2.0, 1.0)
+        for a in range(3):
+            for b in range(3):
+                for r in range(3):
+                    for c in range(3):
+                        amount = s * shares[a] * shares[b] * ((1.0 if r == c else 0.0) - u[r] * u[c] / second)
+                        _add(place, start, value, nodes[a], nodes[b], r, c, amount)
+
+
 def constraint_matrix(rows: Rows, active: Bools, place: Ints, start: Ints, value: Floats) -> None:
     """Add the stiffness of the active rows."""
-    node, share, direction, weight = rows.node, rows.share, rows.direction, rows.weight
+    node, push, weight = rows.node, rows.push, rows.weight
+    slots = SLOTS
     for k in range(active.shape[0]):
         if not active[k]:
             continue
-        for a in range(SLOTS):
-            for b in range(SLOTS):
-                s = weight[k] * share[k, a] * share[k, b]
-                if s != 0.0:
+        if k >= rows.contacts:
+            slots = 3
+        for b in range(slots):
+            for c in range(3):
+                s = weight[k] * push[k, b, c]
+                if s == 0.0:
+                    continue
+                column = start[3 * node[k, b] + c]
+                for a in range(slots):
+                    at = column + 3 * place[node[k, b], node[k, a]]
                     for r in range(3):
-                        for c in range(3):
-                            amount = s * direction[k, r] * direction[k, c]
-                            _add(place, start, value, node[k, a], node[k, b], r, c, amount)
+                        value[at + r] += s * push[k, a, r]
 
 
 def lowest_share(gap: Floats, rate: Floats, weight: Floats, slope: float, curve: float) -> float:
@@ -285,4 +320,4 @@ def lowest_share(gap: Floats, rate: Floats, weight: Floats, slope: float, curve:
     return a
 
 
-compile_kernels(__name__, inline=("_add",), owning=("touching", "tension_matrix"))
+compile_kernels(__name__, inline=("_add",), owning=("touching", "tension_matrix", "bend_matrix"))

@@ -38,29 +38,38 @@ BENDING = 0.8
 SHIFT = 1e-3
 """Added to the diagonal, so that motion as a whole is determined."""
 
-INNER = 12
-"""Changes of the active set in one step, at most."""
+SAFE = 0.4
+"""Longest step, in distances of the nearest strands: two that come towards each other cannot meet."""
 
 HALVINGS = 6
 """Of a step that does not lower the energy."""
 
 
 class Settings(NamedTuple):
-    """How to relax: stiffness of the constraints, longest step [radii], iterations, and the residual to reach."""
+    """How to relax: stiffness of the constraints, longest step [radii], iterations, the residual to reach, and how
+    often the active set may change in one step."""
 
     stiffness: float
     step: float
     iterations: int
     tolerance: float
+    changes: int = 12
 
 
 class Relaxed(NamedTuple):
-    """Nodes x (n, 3), the energy there, the residual force per force of tension, and the steps taken."""
+    """Nodes x (n, 3), the energy there, the residual force per force of tension, and the steps taken.
+
+    contacts (m, 2) are nodes that push each other apart, with forces (m,) in units of the tension; kinks are nodes
+    that are bent as sharply as the radius allows.
+    """
 
     x: Floats
     energy: float
     residual: float
     iterations: int
+    contacts: Ints
+    forces: Floats
+    kinks: Ints
 
 
 class _Scales(NamedTuple):
@@ -92,13 +101,15 @@ def relax(x: Floats, loops: Loops, how: Settings) -> Relaxed:
         tension, length_force = _tension(x, loops, scales)
         overlap = rows.weight * np.maximum(rows.gap, 0.0)
         net = tension.copy()
-        kernels.push(rows, overlap, net)
+        kernels.add_forces(rows, overlap, net)
         residual = float(np.linalg.norm(net) / np.linalg.norm(length_force))
         energy = _energy(x, loops, scales)
         if residual < how.tolerance:
             break
-        d = _step(x, loops, scales, rows, tension)
-        share = min(1.0, how.step / float(np.sqrt((d * d).sum(axis=1).max())))
+        d = _step(x, loops, kappa, scales, rows, tension, how.changes)
+        nearest = 2.0 - float(rows.gap[: rows.contacts].max(initial=0.0))
+        longest = min(how.step, SAFE * nearest)
+        share = min(1.0, longest / float(np.sqrt((d * d).sum(axis=1).max())))
         fall = float((net * d).sum())
         for _ in range(HALVINGS):
             lower = _energy(x + share * d, loops, scales) <= energy - 1e-4 * share * fall
@@ -108,7 +119,16 @@ def relax(x: Floats, loops: Loops, how: Settings) -> Relaxed:
         if not lower:
             break
         x = x + share * d
-    return Relaxed(x, energy, residual, taken)
+    return Relaxed(x, energy, residual, taken, *_touches(rows))
+
+
+def _touches(rows: Rows) -> tuple[Ints, Floats, Ints]:
+    """Pairs of nodes in contact, the forces between them, and kinks."""
+    m = rows.contacts
+    on = rows.gap > 0
+    pairs, place = np.unique(rows.node[:m][on[:m]][:, [1, 4]], axis=0, return_inverse=True)
+    forces = np.bincount(place, (rows.weight * rows.gap)[:m][on[:m]], minlength=len(pairs))
+    return pairs, forces, rows.node[m:, 1][on[m:]]
 
 
 def _scales(x: Floats, loops: Loops, stiffness: float) -> _Scales:
@@ -155,15 +175,17 @@ def _rows(x: Floats, p: Floats, kappa: Floats, loops: Loops, scales: _Scales, ma
     near = float(min(0.5, 5 * margin))
     m = len(pairs) + int((kappa >= -near).sum())
     rows = Rows(
-        np.empty((m, kernels.SLOTS), np.int64), np.empty((m, kernels.SLOTS)), np.empty((m, 3)), np.empty(m),
-        np.empty(m),
+        np.empty((m, kernels.SLOTS), np.int64), np.empty((m, kernels.SLOTS, 3)), np.empty(m), np.empty(m),
+        len(pairs),
     )  # fmt: skip
     kernels.contact_rows(p, pairs, loops, scales.contact, rows)
-    kernels.bend_rows(x, loops, scales.edge, kappa, near, scales.bend, len(pairs), rows)
+    kernels.bend_rows(x, loops, kappa, near, scales.bend, len(pairs), rows)
     return rows
 
 
-def _step(x: Floats, loops: Loops, scales: _Scales, rows: Rows, tension: Floats) -> Floats:
+def _step(
+    x: Floats, loops: Loops, kappa: Floats, scales: _Scales, rows: Rows, tension: Floats, changes: int
+) -> Floats:
     """The displacement (n, 3) that solves the quadratic program, by changing active sets."""
     n = len(x)
     place = np.empty((n, n), np.int64)
@@ -173,15 +195,16 @@ def _step(x: Floats, loops: Loops, scales: _Scales, rows: Rows, tension: Floats)
     kernels.columns(place, start, row)
     plain, value = np.empty(len(row)), np.empty(len(row))
     kernels.tension_matrix(x, loops, scales.edge, SPACING, SHIFT, place, start, plain)
+    kernels.bend_matrix(x, loops, kappa, scales.bend, place, start, plain)
     d, rate, towards = np.zeros((n, 3)), np.zeros(len(rows.gap)), np.empty(len(rows.gap))
     active = rows.gap > 0
     matrix = csc_array((value, row.astype(np.int32), start.astype(np.int32)), shape=(3 * n, 3 * n))
     stiff = csc_array((plain, matrix.indices, matrix.indptr), shape=matrix.shape)
-    for _ in range(INNER):
+    for _ in range(changes):
         matrix.data[:] = plain
         kernels.constraint_matrix(rows, active, place, start, matrix.data)
         force = tension.copy()
-        kernels.push(rows, np.where(active, rows.weight * rows.gap, 0.0), force)
+        kernels.add_forces(rows, np.where(active, rows.weight * rows.gap, 0.0), force)
         change = _solve(matrix, force) - d
         kernels.derivative(rows, change, towards)
         stiffened = (stiff @ change.ravel()).reshape(n, 3)

@@ -1,0 +1,49 @@
+"""Loose curves to tighten: knots and links by name, drawn as closed braids."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from functools import lru_cache
+from importlib.resources import files
+from types import MappingProxyType
+
+from torsade.arrays import Floats
+from torsade.topology.codes.braid import to_braid
+from torsade.topology.drawing_curves import braid_curves
+from torsade.topology.named import COMMON_NAMES, named_diagram
+
+__all__ = ["braid_words", "loose_knot"]
+
+NODES = 100
+"""To a crossing of the braid."""
+
+
+@lru_cache(maxsize=1)
+def braid_words() -> Mapping[str, tuple[int, ...]]:
+    """Braids of the prime knots through 10 crossings, from `catalogue/braids.json`."""
+    text = files("torsade.knots").joinpath("catalogue/braids.json").read_text(encoding="utf-8")
+    return MappingProxyType({name: tuple(word) for name, word in json.loads(text).items()})
+
+
+def loose_knot(name: str) -> list[Floats]:
+    """A knot or link of the table as closed curves in space, shapes (n, 3), in units of its strands' distance.
+
+    Names are those of `named_diagram`: m before one takes the mirror image, # joins summands.
+
+    Raises:
+        TorsadeError: a name that is not in the table.
+
+    >>> from torsade.topology.identify import identify_curves
+    >>> print(identify_curves(loose_knot("m5_2")))
+    m5_2
+    """
+    diagram = named_diagram(name)
+    plain = COMMON_NAMES.get(name.strip().lower(), name.strip())
+    known = braid_words().get(plain.removeprefix("m"))
+    if known is not None:
+        word = [-i for i in known] if plain.startswith("m") else list(known)
+    else:
+        word = to_braid(diagram)
+    strands = max((abs(i) + 1 for i in word), default=1)
+    return braid_curves(word, strands, nodes=NODES * max(4, len(word)))
