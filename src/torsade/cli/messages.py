@@ -13,8 +13,11 @@ if TYPE_CHECKING:
 
 __all__ = ["parse_error", "say"]
 
-TOPOLOGY_OPTIONS = ("--pulled", "--drawings", "--length-unit")
-"""Options of `torsade topology` that take a value."""
+VALUES = {
+    "topology": ("--pulled", "--drawings", "--length-unit"),
+    "tight": ("--ropelength", "--radius", "--nodes", "--tries", "--out", "--picture"),
+}
+"""Options that take a value, of the commands that are about what comes first."""
 
 
 def say(message: str) -> None:
@@ -30,8 +33,8 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
     token = getattr(getattr(error, "token", None), "keyword", None)
     if kind == "UnknownOptionError" and token:
         return _unknown_option(str(token), arguments)
-    if arguments[:1] == ["topology"]:
-        return _about_topology(kind, unused, arguments)
+    if arguments[0] in VALUES:
+        return _about(kind, unused, arguments)
     if kind == "UnknownCommandError" or (kind == "UnusedCliTokensError" and arguments[:1] != ["run"]):
         return _unknown_command(unused[0] if unused else arguments[0], arguments)
     if kind == "UnusedCliTokensError":
@@ -51,9 +54,9 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
     return text.replace(". ", "; ") + "; see torsade --help"
 
 
-def _about_topology(kind: str, unused: Sequence[str], arguments: Sequence[str]) -> str:
-    """What `torsade topology` cannot read, other than unknown options."""
-    if kind == "MissingArgumentError" and arguments[-1] in TOPOLOGY_OPTIONS:
+def _about(kind: str, unused: Sequence[str], arguments: Sequence[str]) -> str:
+    """What `torsade topology` or `torsade tight` cannot read, other than unknown options."""
+    if kind == "MissingArgumentError" and arguments[-1] in VALUES[arguments[0]]:
         return f"{arguments[-1]} has no value; give one after it, such as {arguments[-1]} VALUE"
     if kind == "RepeatArgumentError":
         return "an option is given more than once; give each once"
@@ -71,9 +74,9 @@ def _unknown_option(option: str, arguments: Sequence[str]) -> str:
     if arguments[:1] == ["demo"]:
         known = ["--out", "--json", "--help"]
         command = "torsade demo"
-    elif arguments[:1] == ["topology"]:
-        known = [*TOPOLOGY_OPTIONS, "--json", "--help"]
-        command = "torsade topology"
+    elif arguments[0] in VALUES:
+        known = [*VALUES[arguments[0]], "--json", "--help"]
+        command = f"torsade {arguments[0]}"
     elif arguments[:1] == ["run"] and len(arguments) > 1 and arguments[1] in PROTOCOLS:
         spec = PROTOCOLS[arguments[1]]
         name = option.lstrip("-").replace("-", "_")
@@ -96,7 +99,7 @@ def _unknown_command(word: str, arguments: Sequence[str]) -> str:
         return f"there is no protocol {word!r}; {hint}choose one of {', '.join(PROTOCOLS)}"
     if word in PROTOCOLS:
         return f"{word!r} is a protocol; give torsade run {word}"
-    near = difflib.get_close_matches(word, ["demo", "run", "topology", "--help", "--version"], n=1)
-    hint = f"did you mean {near[0]!r}?" if near else "choose demo, run or topology, or see torsade --help"
+    near = difflib.get_close_matches(word, ["demo", "run", "topology", "tight", "--help", "--version"], n=1)
+    hint = f"did you mean {near[0]!r}?" if near else "choose demo, run, topology or tight, or see torsade --help"
     what = "option" if word.startswith("-") else "command"
     return f"there is no {what} {word!r}; {hint}"

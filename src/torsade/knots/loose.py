@@ -10,10 +10,11 @@ from types import MappingProxyType
 
 from torsade.arrays import Floats
 from torsade.topology.codes.braid import to_braid
+from torsade.topology.diagram import Diagram
 from torsade.topology.drawing_curves import braid_curves
 from torsade.topology.named import COMMON_NAMES, named_diagram
 
-__all__ = ["braid_words", "loose_knot"]
+__all__ = ["braid_words", "loose_diagram", "loose_knot"]
 
 NODES = 100
 """To a crossing of the braid."""
@@ -41,9 +42,21 @@ def loose_knot(name: str) -> list[Floats]:
     diagram = named_diagram(name)
     plain = COMMON_NAMES.get(name.strip().lower(), name.strip())
     known = braid_words().get(plain.removeprefix("m"))
-    if known is not None:
-        word = [-i for i in known] if plain.startswith("m") else list(known)
-    else:
-        word = to_braid(diagram)
+    if known is None:
+        return loose_diagram(diagram)
+    word = [-i for i in known] if plain.startswith("m") else list(known)
+    return _closed(word)
+
+
+def loose_diagram(diagram: Diagram) -> list[Floats]:
+    """Closed curves in space that a closed diagram draws, as a braid; for names `loose_knot` knows shorter ones.
+
+    Raises:
+        TorsadeError: the diagram has open strands.
+    """
+    return _closed(to_braid(diagram))
+
+
+def _closed(word: list[int]) -> list[Floats]:
     strands = max((abs(i) + 1 for i in word), default=1)
     return braid_curves(word, strands, nodes=NODES * max(4, len(word)))

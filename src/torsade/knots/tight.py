@@ -48,6 +48,8 @@ _SHAKE = 0.9  # of the radius swollen so: strands are two of them apart
 _WAVES = 6
 _SMOOTHING = (0.5, 0.25, 0.1, 0.0)  # scales, in half distances of strands
 _LONGEST = 3000.0
+_LOOSER = 1.3  # than a ropelength that is asked for, at the start
+_NEARLY = 1.15  # of it, from where on nodes stand as in the result
 _SPACING_RANGE = (0.03, 0.5)
 
 Progress = Callable[[float, str], None]
@@ -69,7 +71,8 @@ class TightKnot:
         residual: force that is not balanced per force of tension, both as root mean squares over nodes: 0 at a
             critical shape.
         iterations: Newton steps at the final resolution.
-        reached: whether a ropelength that was asked for has been reached; True if none was.
+        reached: whether a ropelength that was asked for has been reached; True if none was. The knot is then not
+            tight: `contacts`, `kinks` and `residual` are those of a moment on the way.
     """
 
     strands: tuple[Floats, ...]
@@ -125,7 +128,7 @@ def tighten(
         ropelength: stop where L/h falls to this value, with the fiber in contact or at its sharpest bend. A curve
             that is shorter is first made longer. `reached` is False if the knot is tight before.
         tries: how many other shapes to look at on the way; with 0 it is a matter of luck which of several
-            local minima is found. Without effect where a ropelength is given.
+            local minima is found. Where a ropelength is given, only if the first does not get there.
         tolerance: residual at which Newton's method stops.
         seed: of the random numbers that other shapes come from.
         progress: called with the share done and what is being done.
@@ -141,12 +144,19 @@ def tighten(
     given = [np.array(x, dtype=np.float64) for x in strands]
     loose, names = _smoothed(given)
     if ropelength is not None:
-        return _stopped(loose, names, ropelength, radius, nodes, tolerance, tell)
+        stopped = _stopped(loose, ropelength, radius, nodes, tell)
+        if stopped is not None:
+            return stopped
     tell(0.05, "shrinking")
     best, found = _coarse(shaken(spaced(loose, _COARSE), 0.3, 5, np.random.default_rng(seed)))
     try:
         best, found = _search(best, found, names, tries, seed, tell)
-        return _finished(best, names, radius, nodes, tolerance, tell)
+        if ropelength is not None:
+            stopped = _stopped(best, ropelength, radius, nodes, tell)
+            if stopped is not None:
+                return stopped
+        tight = _finished(best, names, radius, nodes, tolerance, tell)
+        return replace(tight, reached=ropelength is None)
     except KeyboardInterrupt:
         raise Interrupted(_result(best, found, radius)) from None
 
@@ -297,31 +307,27 @@ def _result(strands: Strands, found: Relaxed, radius: float) -> TightKnot:
 
 
 def _stopped(
-    loose: Strands, names: tuple[str, ...], ropelength: float, radius: float, nodes: int | None,
-    tolerance: float, tell: Progress,
-) -> TightKnot:  # fmt: skip
-    """Shrunk until L/h is what was asked for; the rest of the way from one step to the next is divided."""
-    tell(0.1, "shrinking")
-    if _whole(loose) < 1.3 * ropelength:
-        loose = loosened(loose, 1.3 * ropelength)
-    strands = spaced(loose, _COARSE)
-    step = Settings(_COARSE_STIFFNESS, _LONG_STEP, 1, _COARSE_TOLERANCE)
-    while _whole(strands) > 1.15 * ropelength:
+    loose: Strands, ropelength: float, radius: float, nodes: int | None, tell: Progress
+) -> TightKnot | None:
+    """Shrunk until L/h is what was asked for, None if it stays above; the last step is divided."""
+    strands = spaced(loosened(loose, _LOOSER * ropelength), _COARSE)
+    step = Settings(_COARSE_STIFFNESS, _LONG_STEP, 1, _COARSE_TOLERANCE, _CHANGES)
+    while _whole(strands) > _NEARLY * ropelength:
         before = _whole(strands)
         strands = spaced(_relaxed(strands, step)[0], _COARSE)
         if _whole(strands) > 0.9999 * before:
-            return replace(_finished(strands, names, radius, nodes, tolerance, tell), reached=False)
+            return None
     strands = spaced(strands, _final_spacing(strands, nodes))
-    step = Settings(_stiffnesses(SPACING)[0], _SHORT_STEP, 1, tolerance)
-    for k in range(200):
-        tell(0.3 + 0.7 * k / 200, f"L/h about {_whole(strands):.2f}")
+    step = Settings(_stiffnesses(SPACING)[0], _SHORT_STEP, 1, _COARSE_TOLERANCE)
+    for _ in range(_MOST_ROUNDS):
+        tell(0.1, f"L/h about {_whole(strands):.2f}")
         after, found = _relaxed(strands, step)
         if thickness(after).ropelength <= ropelength:
             return _result(_between(strands, after, ropelength), found, radius)
-        if found.residual < tolerance or _whole(after) > 0.99999 * _whole(strands):
+        if found.residual < _COARSE_TOLERANCE or _whole(after) > 0.99999 * _whole(strands):
             break
         strands = after
-    return replace(_finished(strands, names, radius, nodes, tolerance, tell), reached=False)
+    return None
 
 
 def _between(longer: Strands, shorter: Strands, ropelength: float) -> Strands:
