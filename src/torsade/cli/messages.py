@@ -100,6 +100,8 @@ def _unknown_command(word: str, arguments: Sequence[str]) -> str:
     if word in PROTOCOLS:
         return f"{word!r} is a protocol; give torsade run {word}"
     near = difflib.get_close_matches(word, ["demo", "run", "topology", "tight", "--help", "--version"], n=1)
-    hint = f"did you mean {near[0]!r}?" if near else "choose demo, run, topology or tight, or see torsade --help"
+    hint = (
+        f"did you mean {near[0]!r}?" if near else "choose demo, run, topology or tight, or see torsade --help"
+    )
     what = "option" if word.startswith("-") else "command"
     return f"there is no {what} {word!r}; {hint}"

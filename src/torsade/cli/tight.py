@@ -160,6 +160,9 @@ def _rows(answer: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield "length", f"{1e3 * answer['length_m']:.5g} mm at radius {1e3 * answer['radius_m']:g} mm"
     yield "writhe in space", f"{answer['writhe_3d']:+.4f}"
     yield "average crossing number", f"{answer['acn']:.4f}"
-    yield "contacts, kinks", f"{answer['contacts']} pairs of nodes, {answer['kinks']} nodes of {answer['nodes']}"
+    yield (
+        "contacts, kinks",
+        f"{answer['contacts']} pairs of nodes, {answer['kinks']} nodes of {answer['nodes']}",
+    )
     yield "force not balanced", f"{answer['residual']:.1e} of the tension"
     yield "time", f"{answer['wall_s']:.1f} s"

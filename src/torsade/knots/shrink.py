@@ -86,7 +86,9 @@ def loops_of(sizes: Ints) -> Loops:
     first = np.repeat(np.cumsum(sizes) - sizes, sizes)
     size = np.repeat(sizes, sizes)
     k = np.arange(len(first)) - first
-    return Loops(first + (k - 1) % size, first + (k + 1) % size, np.repeat(np.arange(len(sizes)), sizes), size)
+    return Loops(
+        first + (k - 1) % size, first + (k + 1) % size, np.repeat(np.arange(len(sizes)), sizes), size
+    )
 
 
 def relax(x: Floats, loops: Loops, how: Settings) -> Relaxed:
@@ -221,7 +223,5 @@ def _step(
 
 
 def _solve(matrix: csc_array, force: Floats) -> Floats:
-    factors = splu(
-        matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-    )
+    factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     return np.asarray(factors.solve(force.ravel()).reshape(-1, 3))

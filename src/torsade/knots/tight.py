@@ -49,7 +49,7 @@ _WAVES = 6
 _SMOOTHING = (0.5, 0.25, 0.1, 0.0)  # scales, in half distances of strands
 _LONGEST = 3000.0
 _LOOSER = 1.3  # than a ropelength that is asked for, at the start
-_NEARLY = 1.15  # of it, from where on nodes stand as in the result
+_NEARLY = 1.05  # of it, from where on nodes stand as in the result
 _SPACING_RANGE = (0.03, 0.5)
 
 Progress = Callable[[float, str], None]
@@ -161,9 +161,7 @@ def tighten(
         raise Interrupted(_result(best, found, radius)) from None
 
 
-def _check(
-    radius: float, nodes: int | None, ropelength: float | None, tries: int, tolerance: float
-) -> None:
+def _check(radius: float, nodes: int | None, ropelength: float | None, tries: int, tolerance: float) -> None:
     if not 0 < radius < np.inf:
         raise TorsadeError(f"the radius of the fiber is {radius:g} m; give a finite length above 0")
     if nodes is not None and not 3 * 16 <= nodes <= 4000:
@@ -250,7 +248,12 @@ def _search(
 
 
 def _finished(
-    strands: Strands, names: tuple[str, ...], radius: float, nodes: int | None, tolerance: float, tell: Progress
+    strands: Strands,
+    names: tuple[str, ...],
+    radius: float,
+    nodes: int | None,
+    tolerance: float,
+    tell: Progress,
 ) -> TightKnot:
     """Tightened at the final resolution, with constraints made stiffer step by step."""
     spacing = _final_spacing(strands, nodes)

@@ -218,12 +218,21 @@ def columns(place: Ints, start: Ints, row: Ints) -> None:
             start[3 * j + c + 1] = at
 
 
-def _add(place: Ints, start: Ints, value: Floats, i: Index, j: Index, r: Index, c: Index, amount: float) -> None:
+def _add(
+    place: Ints, start: Ints, value: Floats, i: Index, j: Index, r: Index, c: Index, amount: float
+) -> None:
     value[start[3 * j + c] + 3 * place[j, i] + r] += amount
 
 
 def tension_matrix(
-    x: Floats, loops: Loops, edge: Floats, spacing: float, shift: float, place: Ints, start: Ints, value: Floats
+    x: Floats,
+    loops: Loops,
+    edge: Floats,
+    spacing: float,
+    shift: float,
+    place: Ints,
+    start: Ints,
+    value: Floats,
 ) -> None:
     """Second derivatives of length and of spacing, and shift on the diagonal, into value.
 
