@@ -186,8 +186,8 @@ def _tight(
         Parameter(
             name="NAME|CODE|FILE",
             allow_leading_hyphen=True,
-            help="A knot or link by name (3_1, m5_2, 3_1#4_1, L5a1, borromean) or code, as for torsade topology, "
-            "or a CSV file of closed strands.",
+            help="A knot or link by name (3_1, m5_2, 3_1#4_1, L5a1, borromean) or code, as for torsade "
+            "topology, or a CSV file of closed strands.",
         ),
     ],
     /,

@@ -15,7 +15,7 @@ from torsade.cli.commands import check_drawings, progress
 from torsade.cli.messages import say
 from torsade.cli.subject import subject
 from torsade.errors import TorsadeError
-from torsade.knots.loose import loose_diagram, loose_knot
+from torsade.knots.loose import listed_ropelength, loose_diagram, loose_knot
 from torsade.knots.tight import Interrupted, TightKnot, tighten
 from torsade.topology.identify import identify_curves
 from torsade.topology.measures import average_crossing_number, writhe
@@ -67,10 +67,12 @@ def tight(
 
 def report(given: str, found: TightKnot, radius: float | None, seconds: float) -> dict[str, Any]:
     """Everything that is found out; lengths are None unless a radius was given."""
+    names = identify_curves(found.strands).names
     return {
         "input": given,
-        "names": list(identify_curves(found.strands).names),
+        "names": list(names),
         "ropelength": found.ropelength,
+        "ropelength_listed": listed_ropelength(names[0]) if len(names) == 1 else None,
         "reached": found.reached,
         "length_m": None if radius is None else found.length,
         "radius_m": radius,
@@ -93,12 +95,14 @@ def _curves(given: str) -> list[Any]:
         if not all(shape.closed):
             k = shape.closed.index(False)
             raise TorsadeError(
-                f"strand {k} of {given!r} is open; only closed strands can be tight: end it with its first node"
+                f"strand {k} of {given!r} is open; only closed strands can be tight: "
+                "end it with its first node"
             )
         return list(shape.strands)
     if asked.diagram.ends:
         raise TorsadeError(
-            f"{given!r} has open strands; give a knot or link such as 3_1 or L5a1, the code of one, or a CSV file"
+            f"{given!r} has open strands; give a knot or link such as 3_1 or L5a1, the code of "
+            "one, or a CSV file"
         )
     return loose_knot(given) if asked.kind == "name" else loose_diagram(asked.diagram)
 
@@ -156,6 +160,12 @@ def _rows(answer: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield "given", answer["input"]
     yield "name", " or ".join(answer["names"]) or "not in the table"
     yield "ropelength L/h", f"{answer['ropelength']:.4f}, over the diameter {answer['ropelength'] / 2:.4f}"
+    if answer["ropelength_listed"] is not None:
+        listed = answer["ropelength_listed"]
+        yield (
+            "shortest listed L/h",
+            f"{listed:g}, {100 * (answer['ropelength'] / listed - 1):+.2f} % to this one",
+        )
     if answer["radius_m"] is not None:
         yield "length", f"{1e3 * answer['length_m']:.5g} mm at radius {1e3 * answer['radius_m']:g} mm"
     yield "writhe in space", f"{answer['writhe_3d']:+.4f}"

@@ -1,4 +1,4 @@
-"""Loose curves to tighten: knots and links by name, drawn as closed braids."""
+"""Loose curves to tighten: knots and links by name, drawn as closed braids; and how short they can be."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from functools import lru_cache
 from importlib.resources import files
 from types import MappingProxyType
+from typing import Any
 
 from torsade.arrays import Floats
 from torsade.topology.codes.braid import to_braid
@@ -14,21 +15,40 @@ from torsade.topology.diagram import Diagram
 from torsade.topology.drawing_curves import braid_curves
 from torsade.topology.named import COMMON_NAMES, named_diagram
 
-__all__ = ["braid_words", "loose_diagram", "loose_knot"]
+__all__ = ["braid_words", "listed_ropelength", "loose_diagram", "loose_knot"]
 
 NODES = 100
 """To a crossing of the braid."""
 
 
-@lru_cache(maxsize=1)
-def braid_words() -> Mapping[str, tuple[int, ...]]:
-    """Braids of the prime knots through 10 crossings, from `catalogue/braids.json`."""
-    text = files("torsade.knots").joinpath("catalogue/braids.json").read_text(encoding="utf-8")
-    return MappingProxyType({name: tuple(word) for name, word in json.loads(text).items()})
+@lru_cache(maxsize=2)
+def _catalogue(name: str) -> Mapping[str, Any]:
+    text = files("torsade.knots").joinpath(f"catalogue/{name}.json").read_text(encoding="utf-8")
+    return MappingProxyType(json.loads(text))
+
+
+def braid_words() -> Mapping[str, list[int]]:
+    """Braids of the prime knots through 10 crossings, after KnotInfo."""
+    return _catalogue("braids")
+
+
+def listed_ropelength(name: str) -> float | None:
+    """L/h of the shortest known shape of a prime knot through 10 crossings, after KnotInfo; None for others.
+
+    >>> listed_ropelength("m3_1")
+    32.7436
+    """
+    found: float | None = _catalogue("ropelengths").get(_plain(name).removeprefix("m"))
+    return found
+
+
+def _plain(name: str) -> str:
+    return COMMON_NAMES.get(name.strip().lower(), name.strip())
 
 
 def loose_knot(name: str) -> list[Floats]:
-    """A knot or link of the table as closed curves in space, shapes (n, 3), in units of its strands' distance.
+    """A knot or link of the table as closed curves in space, shapes (n, 3), in units of its strands'
+    distance.
 
     Names are those of `named_diagram`: m before one takes the mirror image, # joins summands.
 
@@ -40,7 +60,7 @@ def loose_knot(name: str) -> list[Floats]:
     m5_2
     """
     diagram = named_diagram(name)
-    plain = COMMON_NAMES.get(name.strip().lower(), name.strip())
+    plain = _plain(name)
     known = braid_words().get(plain.removeprefix("m"))
     if known is None:
         return loose_diagram(diagram)
@@ -49,7 +69,8 @@ def loose_knot(name: str) -> list[Floats]:
 
 
 def loose_diagram(diagram: Diagram) -> list[Floats]:
-    """Closed curves in space that a closed diagram draws, as a braid; for names `loose_knot` knows shorter ones.
+    """Closed curves in space that a closed diagram draws, as a braid; for names `loose_knot` knows shorter
+    ones.
 
     Raises:
         TorsadeError: the diagram has open strands.

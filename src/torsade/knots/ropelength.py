@@ -1,15 +1,17 @@
 """Thickness and ropelength of closed polygons, measured on the smooth curves of arcs that they stand for.
 
 At every node an arc of a circle replaces the corner. It touches both edges at half the length of the shorter
-one, which leaves a curve of straight lines and arcs with continuous tangent. Its reach, the radius of the thickest
-tube around it, is the smaller of its smallest radius of curvature (Rawdon's MinRad of the polygon) and half its
-smallest doubly critical distance (Litherland, Simon, Durumeric and Rawdon 1999; Cantarella, Kusner and Sullivan
-2002). Its length over its reach is therefore a true upper bound of the ropelength of its knot, which the same
-quotient for the polygon is not: polygon and curve differ by terms of second order in the edges, on either side.
+one, which leaves a curve of straight lines and arcs with continuous tangent. Its reach, the radius of the
+thickest tube around it, is the smaller of its smallest radius of curvature (Rawdon's MinRad of the polygon)
+and half its smallest doubly critical distance (Litherland, Simon, Durumeric and Rawdon 1999; Cantarella,
+Kusner and Sullivan 2002). Its length over its reach is therefore a true upper bound of the ropelength of its
+knot, which the same quotient for the polygon is not: polygon and curve differ by terms of second order in the
+edges, on either side.
 
 Two points are doubly critical only if the curve turns by pi or more between them, both ways round: closed by
-their chord, which meets it at right angles, it turns by at least 2 pi (Fenchel). Pairs with less turning between
-them are left out; of all others the distance is bounded from below by that of chords less their sagittas.
+their chord, which meets it at right angles, it turns by at least 2 pi (Fenchel). Pairs with less turning
+between them are left out; of all others the distance is bounded from below by that of chords less their
+sagittas.
 """
 
 from __future__ import annotations
@@ -37,8 +39,8 @@ PROBES = 150
 class Thickness(NamedTuple):
     """Of curves of arcs: length [m], radius h [m] of the thickest tube, and what limits it.
 
-    `bend` is the smallest radius of curvature, `half_distance` half the smallest doubly critical distance; the
-    radius is the smaller one.
+    `bend` is the smallest radius of curvature, `half_distance` half the smallest doubly critical distance;
+    the radius is the smaller one.
     """
 
     length: float
@@ -53,7 +55,8 @@ class Thickness(NamedTuple):
 
 
 class _Chords(NamedTuple):
-    """Chords of the curves of arcs: ends (n, 3), strand (n,), turning from node 0 to before and after (n,)."""
+    """Chords of the curves of arcs: ends (n, 3), strand (n,), turning from node 0 to before and after
+    (n,)."""
 
     p: Floats
     q: Floats
@@ -102,7 +105,8 @@ def thickness(strands: Sequence[ArrayLike], chords: int = CHORDS) -> Thickness:
 
 
 def _arcs(x: Floats, strand: int, chords: int) -> tuple[float, float, float, _Chords]:
-    """Length, smallest radius and largest sagitta of the arcs of a polygon, and their chords with the lines."""
+    """Length, smallest radius and largest sagitta of the arcs of a polygon, and their chords with the
+    lines."""
     t, l = tangents(x, True), edge_lengths(x, True)
     phi = turning_angles(x, True)
     before = np.roll(t, 1, axis=0)

@@ -1,8 +1,8 @@
 """Ways out of a shape that is tight, but not the tightest: shaking it, and turning it inside out.
 
-Both keep the knot. Shaking moves nodes by less than half the distance of strands. An inversion in a sphere, its
-centre in a hole of the knot, carries strands through infinity, where nothing can be met; it makes a mirror image,
-which a point reflection takes back.
+Both keep the knot. Shaking moves nodes by less than half the distance of strands. An inversion in a sphere,
+its centre in a hole of the knot, carries strands through infinity, where nothing can be met; it makes a
+mirror image, which a point reflection takes back.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ def shaken(strands: Strands, size: float, waves: int, random: Generator) -> Stra
 
 
 def inverted(strands: Strands, longest: float, random: Generator) -> Strands | None:
-    """Strands inverted about a hole of theirs and scaled to radius one; None if all tried are longer than that."""
+    """Strands inverted about a hole of theirs and scaled to radius one; None if all tried are longer than
+    that."""
     fine = spaced(strands, 0.2)
     nodes = np.concatenate(fine)
     low, high = nodes.min(axis=0), nodes.max(axis=0)

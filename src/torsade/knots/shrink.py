@@ -5,10 +5,11 @@ made smallest is
 
     sum of edges + spacing/2 sum (edge - mean)^2/mean + weight/2 sum (overlap)^2 + bending/2 sum (excess)^2:
 
-length, nodes evenly spread, samples of the B-spline that are nearer than two radii, and nodes bent beyond curvature
-one. Overlaps are of the order of 1/stiffness, and what is reported is measured afterwards, with all of them in
-it. Each step solves the quadratic program of the linearised constraints by active sets: a few sparse
-factorisations. The motion of a step is far smaller than the distance of strands, so that none pass through another.
+length, nodes evenly spread, samples of the B-spline that are nearer than two radii, and nodes bent beyond
+curvature one. Overlaps are of the order of 1/stiffness, and what is reported is measured afterwards, with all
+of them in it. Each step solves the quadratic program of the linearised constraints by active sets: a few
+sparse factorisations. The motion of a step is far smaller than the distance of strands, so that none pass
+through another.
 """
 
 from __future__ import annotations
@@ -46,8 +47,8 @@ HALVINGS = 6
 
 
 class Settings(NamedTuple):
-    """How to relax: stiffness of the constraints, longest step [radii], iterations, the residual to reach, and how
-    often the active set may change in one step."""
+    """How to relax: stiffness of the constraints, longest step [radii], iterations, the residual to reach,
+    and how often the active set may change in one step."""
 
     stiffness: float
     step: float
@@ -59,8 +60,8 @@ class Settings(NamedTuple):
 class Relaxed(NamedTuple):
     """Nodes x (n, 3), the energy there, the residual force per force of tension, and the steps taken.
 
-    contacts (m, 2) are nodes that push each other apart, with forces (m,) in units of the tension; kinks are nodes
-    that are bent as sharply as the radius allows.
+    contacts (m, 2) are nodes that push each other apart, with forces (m,) in units of the tension; kinks are
+    nodes that are bent as sharply as the radius allows.
     """
 
     x: Floats
@@ -93,9 +94,8 @@ def loops_of(sizes: Ints) -> Loops:
 
 def relax(x: Floats, loops: Loops, how: Settings) -> Relaxed:
     """Take Newton steps until the residual is reached, nothing gets better, or so many are taken."""
-    residual, taken = np.inf, 0
-    energy = 0.0
-    for taken in range(how.iterations):
+    taken = 0
+    while True:
         scales = _scales(x, loops, how.stiffness)
         p, kappa = _sampled(x, loops, scales)
         margin = 0.2 * float(scales.edge.mean())
@@ -106,7 +106,7 @@ def relax(x: Floats, loops: Loops, how: Settings) -> Relaxed:
         kernels.add_forces(rows, overlap, net)
         residual = float(np.linalg.norm(net) / np.linalg.norm(length_force))
         energy = _energy(x, loops, scales)
-        if residual < how.tolerance:
+        if residual < how.tolerance or taken == how.iterations:
             break
         d = _step(x, loops, kappa, scales, rows, tension, how.changes)
         nearest = 2.0 - float(rows.gap[: rows.contacts].max(initial=0.0))
@@ -121,6 +121,7 @@ def relax(x: Floats, loops: Loops, how: Settings) -> Relaxed:
         if not lower:
             break
         x = x + share * d
+        taken += 1
     return Relaxed(x, energy, residual, taken, *_touches(rows))
 
 
@@ -129,7 +130,8 @@ def _touches(rows: Rows) -> tuple[Ints, Floats, Ints]:
     m = rows.contacts
     on = rows.gap > 0
     pairs, place = np.unique(rows.node[:m][on[:m]][:, [1, 4]], axis=0, return_inverse=True)
-    forces = np.bincount(place, (rows.weight * rows.gap)[:m][on[:m]], minlength=len(pairs))
+    forces = np.zeros(len(pairs))
+    np.add.at(forces, place, (rows.weight * rows.gap)[:m][on[:m]])
     return pairs, forces, rows.node[m:, 1][on[m:]]
 
 
@@ -209,7 +211,7 @@ def _step(
         kernels.add_forces(rows, np.where(active, rows.weight * rows.gap, 0.0), force)
         change = _solve(matrix, force) - d
         kernels.derivative(rows, change, towards)
-        stiffened = (stiff @ change.ravel()).reshape(n, 3)
+        stiffened = np.asarray(stiff @ change.ravel()).reshape(n, 3)
         slope = float((d * stiffened).sum() - (tension * change).sum())
         curve = float((change * stiffened).sum())
         share = kernels.lowest_share(rows.gap - rate, towards, rows.weight, slope, curve)

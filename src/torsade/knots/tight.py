@@ -1,9 +1,9 @@
 """Tight knots: the shortest closed fiber of a given radius that makes a knot or a link.
 
-Length is made smallest under the constraint that a tube of the radius h fits around the fiber: no part comes nearer
-to another than 2h, none bends more sharply than 1/h. L/h of the shape found is an upper bound of the ropelength of
-its knot (other books divide by the diameter, and have half of it). The method is in `shrink`, what is measured in
-`ropelength`, and the search for a better shape in `shake`.
+Length is made smallest under the constraint that a tube of the radius h fits around the fiber: no part comes
+nearer to another than 2h, none bends more sharply than 1/h. L/h of the shape found is an upper bound of the
+ropelength of its knot (other books divide by the diameter, and have half of it). The method is in `shrink`,
+what is measured in `ropelength`, and the search for a better shape in `shake`.
 """
 
 from __future__ import annotations
@@ -68,11 +68,11 @@ class TightKnot:
         contacts: pairs of nodes (m, 2), counted through all strands, where the fiber presses on itself.
         forces: with which it does (m,), in units of the tension.
         kinks: nodes (k,) where the curvature is as large as the radius allows.
-        residual: force that is not balanced per force of tension, both as root mean squares over nodes: 0 at a
-            critical shape.
+        residual: force that is not balanced per force of tension, both as root mean squares over nodes: 0 at
+            a critical shape.
         iterations: Newton steps at the final resolution.
-        reached: whether a ropelength that was asked for has been reached; True if none was. The knot is then not
-            tight: `contacts`, `kinks` and `residual` are those of a moment on the way.
+        reached: whether a ropelength that was asked for has been reached; True if none was. The knot is then
+            not tight: `contacts`, `kinks` and `residual` are those of a moment on the way.
     """
 
     strands: tuple[Floats, ...]
@@ -125,8 +125,8 @@ def tighten(
         strands: nodes of closed curves, shapes (n, 3), in any unit; they need not be smooth.
         radius: h [m] of the result.
         nodes: of the result, all strands together; by default one every fifth of the radius.
-        ropelength: stop where L/h falls to this value, with the fiber in contact or at its sharpest bend. A curve
-            that is shorter is first made longer. `reached` is False if the knot is tight before.
+        ropelength: stop where L/h falls to this value, with the fiber in contact or at its sharpest bend. A
+            curve that is shorter is first made longer. `reached` is False if the knot is tight before.
         tries: how many other shapes to look at on the way; with 0 it is a matter of luck which of several
             local minima is found. Where a ropelength is given, only if the first does not get there.
         tolerance: residual at which Newton's method stops.
@@ -134,8 +134,8 @@ def tighten(
         progress: called with the share done and what is being done.
 
     Raises:
-        TorsadeError: no strand, one that is not closed or passes through itself; a radius, ropelength, number of
-            nodes or tries out of range.
+        TorsadeError: no strand, one that is not closed or passes through itself; a radius, ropelength, number
+            of nodes or tries out of range.
         Interrupted: by Ctrl-C, once there is a shape to keep.
     """
     _check(radius, nodes, ropelength, tries, tolerance)
@@ -168,8 +168,8 @@ def _check(radius: float, nodes: int | None, ropelength: float | None, tries: in
         raise TorsadeError(f"{nodes} nodes are asked for; give 48 to 4000")
     if ropelength is not None and not 2 * np.pi < ropelength <= _LONGEST / 10:
         raise TorsadeError(
-            f"the ropelength asked for is {ropelength:g}; give a number above 2 pi, that of a circle, and up to "
-            f"{_LONGEST / 10:g}"
+            f"the ropelength asked for is {ropelength:g}; give a number above 2 pi, that of a circle, "
+            f"and up to {_LONGEST / 10:g}"
         )
     if tries < 0:
         raise TorsadeError(f"{tries} tries are asked for; give 0 or more")
@@ -178,7 +178,8 @@ def _check(radius: float, nodes: int | None, ropelength: float | None, tries: in
 
 
 def _smoothed(given: Strands) -> tuple[Strands, tuple[str, ...]]:
-    """The curves at radius one, smoothed as far as it makes them thicker and leaves the knot; and its names."""
+    """The curves at radius one, smoothed as far as it makes them thicker and leaves the knot; and its
+    names."""
     names = _names(given)
     measured = thickness(given, 1)
     scale = measured.half_distance if np.isfinite(measured.half_distance) else measured.length / (2 * np.pi)
@@ -192,8 +193,8 @@ def _smoothed(given: Strands) -> tuple[Strands, tuple[str, ...]]:
             best, shortest = [x / found.radius for x in curves], found.ropelength
     if shortest > _LONGEST:
         raise TorsadeError(
-            f"the curve has L/h = {shortest:.0f} even when smoothed, too much to shrink; give one with L/h up to "
-            f"{_LONGEST:g}, without near misses"
+            f"the curve has L/h = {shortest:.0f} even when smoothed, too much to shrink; give one with L/h "
+            f"up to {_LONGEST:g}, without near misses"
         )
     return best, names
 
@@ -267,7 +268,8 @@ def _finished(
         iterations += found.iterations
     if _names(strands) != names:
         raise TorsadeError(
-            "the knot changed while it was tightened, which is a fault of the program; please report the curve"
+            "the knot changed while it was tightened, which is a fault of the program; please report the "
+            "curve"
         )
     return _result(strands, found._replace(iterations=iterations), radius)
 

@@ -1,8 +1,9 @@
 """Kernels of tightening: what touches, what bends too sharply, and the linear systems of Newton's method.
 
 All lengths are in units of the target radius. A closed strand is a control polygon: the quadratic B-spline of
-its nodes touches every edge at its middle. On it lie two samples a node, the middle of the edge before and the
-point nearest to the node. Constraints are rows: a gap that is positive when the constraint is broken, and its
+its nodes touches every edge at its middle. On it lie two samples a node, the middle of the edge before and
+the point nearest to the node. Constraints are rows: a gap that is positive when the constraint is broken, and
+its
 derivative: moving node row.node[k, m] along row.push[k, m] closes it.
 """
 
@@ -22,7 +23,8 @@ SLOTS = 6
 
 
 class Loops(NamedTuple):
-    """Closed strands as one list of nodes: neighbours before and after (n,), strand (n,) and its size (n,)."""
+    """Closed strands as one list of nodes: neighbours before and after (n,), strand (n,) and its size
+    (n,)."""
 
     before: Ints
     after: Ints
@@ -38,16 +40,6 @@ class Rows(NamedTuple):
     gap: Floats
     weight: Floats
     contacts: int
-
-
-class Matrix(NamedTuple):
-    """A symmetric matrix of 3 x 3 blocks in compressed columns; place (n, n) is a block's number in its column."""
-
-    place: Ints
-    count: Ints
-    start: Ints
-    row: Ints
-    value: Floats
 
 
 def samples(x: Floats, loops: Loops, p: Floats) -> None:
@@ -93,8 +85,8 @@ def bends(x: Floats, loops: Loops, edge: Floats, kappa: Floats) -> None:
     """By how much nodes are bent beyond curvature one, into kappa (n,).
 
     Curvature is the second difference of nodes over the square of half their span. An arc of radius one that
-    touches two edges of the same length at their middles has sqrt(1 + edge^2/4) of it; edge (n,) is the mean edge
-    of each node's strand, held fixed.
+    touches two edges of the same length at their middles has sqrt(1 + edge^2/4) of it; edge (n,) is the mean
+    edge of each node's strand, held fixed.
     """
     before, after = loops.before, loops.after
     for i in range(x.shape[0]):
@@ -130,8 +122,9 @@ def contact_rows(p: Floats, pairs: Ints, loops: Loops, weight: float, rows: Rows
 
 def bend_rows(
     x: Floats, loops: Loops, kappa: Floats, margin: float, weight: float, first: Index, rows: Rows
-) -> int:
-    """Fill rows from first on, one for each node bent to within margin of curvature one; returns their end."""
+) -> Index:
+    """Fill rows from first on, one for each node bent to within margin of curvature one; returns their
+    end."""
     before, after = loops.before, loops.after
     node, push = rows.node, rows.push
     k = first
