@@ -16,8 +16,8 @@ import torsade as ts
 from torsade.knots import loose_knot, thickness
 
 KEYS = {
-    "input", "names", "ropelength", "ropelength_listed", "reached", "length_m", "radius_m", "writhe_3d", "acn",
-    "strands", "nodes", "contacts", "kinks", "residual", "wall_s",
+    "input", "names", "ropelength", "ropelength_listed", "reached", "length_m", "radius_m", "writhe_3d",
+    "acn", "strands", "nodes", "contacts", "kinks", "residual", "wall_s",
 }  # fmt: skip
 
 

@@ -203,8 +203,8 @@ def _tight(
         str | None, Parameter(help="Nodes of the result [default: one every fifth of the radius].")
     ] = None,
     tries: Annotated[
-        str, Parameter(help="How many other shapes to look at, for a shorter one [default: 12].")
-    ] = "12",
+        str, Parameter(help="How many other shapes to look at, for a shorter one [default: 14].")
+    ] = "14",
     out: Annotated[str | None, Parameter(help="Write the nodes to this CSV file.")] = None,
     picture: Annotated[str | None, Parameter(help="Draw the tight knot to this PNG file.")] = None,
     json: Annotated[bool, Parameter(help=OPTIONS["json"][1])] = False,

@@ -28,8 +28,8 @@ __all__ = ["Interrupted", "TightKnot", "tighten"]
 SPACING = 0.2
 """Edges of the final polygon [radii]; see the convergence study in docs/tight.md."""
 
-TRIES = 12
-"""Shapes looked at besides the first; every third by inversion, the others by shaking."""
+TRIES = 14
+"""Shapes looked at besides the first, by inversion and by shaking in turn."""
 
 TOLERANCE = 3e-3
 """Residual force per force of tension."""
@@ -45,7 +45,10 @@ _SHORT_STEP = 0.3
 _FINE_STEPS = 25
 _SWELL = 1.5  # before shaking
 _SHAKE = 0.9  # of the radius swollen so: strands are two of them apart
+_TREMBLE = 0.3  # [radii]: of the first shape and of inverted ones, so that no symmetry holds them
 _WAVES = 6
+_LONGEST_INVERTED = 4.0  # times the length before
+_WORTH = 1.03  # times the best: what is longer is not gone on from
 _SMOOTHING = (0.5, 0.25, 0.1, 0.0)  # scales, in half distances of strands
 _LONGEST = 3000.0
 _LOOSER = 1.3  # than a ropelength that is asked for, at the start
@@ -148,7 +151,7 @@ def tighten(
         if stopped is not None:
             return stopped
     tell(0.05, "shrinking")
-    best, found = _coarse(shaken(spaced(loose, _COARSE), 0.3, 5, np.random.default_rng(seed)))
+    best, found = _coarse(shaken(spaced(loose, _COARSE), _TREMBLE, _WAVES, np.random.default_rng(seed)))
     try:
         best, found = _search(best, found, names, tries, seed, tell)
         if ropelength is not None:
@@ -230,21 +233,24 @@ def _coarse(strands: Strands) -> tuple[Strands, Relaxed]:
 def _search(
     best: Strands, found: Relaxed, names: tuple[str, ...], tries: int, seed: int, tell: Progress
 ) -> tuple[Strands, Relaxed]:
-    """The best of other shapes, each made from the best before it."""
+    """The best of other shapes, each made from one before it that was hardly longer than the best."""
     random = np.random.default_rng([seed, 1])
+    current = best
     for k in range(tries):
         tell(0.1 + 0.6 * k / tries, f"L/h about {_whole(best):.2f}")
-        if k % 3 == 1:
-            start = inverted(best, 4 * _whole(best), random)
+        if k % 2 == 0:
+            start = inverted(current, _LONGEST_INVERTED * _whole(current), random)
             if start is None:
                 continue
-            start = shaken(spaced(start, _COARSE), 0.3, _WAVES, random)
+            start = shaken(spaced(start, _COARSE), _TREMBLE, _WAVES, random)
         else:
-            swollen = spaced([_SWELL * x for x in best], _COARSE)
+            swollen = spaced([_SWELL * x for x in current], _COARSE)
             start = shaken(swollen, _SHAKE * _SWELL, _WAVES, random)
         other, result = _coarse(start)
-        if result.energy < found.energy and _names(other) == names:
-            best, found = other, result
+        if result.energy < _WORTH * found.energy and _names(other) == names:
+            current = other
+            if result.energy < found.energy:
+                best, found = other, result
     return best, found
 
 
