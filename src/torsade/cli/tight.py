@@ -42,7 +42,7 @@ def tight(
         "nodes": _whole("--nodes", nodes),
         "tries": _whole("--tries", tries),
     }
-    h = None if radius is None else quantity(radius, "length")
+    h = None if radius is None else _radius(radius)
     _check_out(out)
     check_drawings(picture, None)
     try:
@@ -105,6 +105,13 @@ def _curves(given: str) -> list[Any]:
             "one, or a CSV file"
         )
     return loose_knot(given) if asked.kind == "name" else loose_diagram(asked.diagram)
+
+
+def _radius(text: str) -> float:
+    try:
+        return quantity(text, "length")
+    except TorsadeError as error:
+        raise TorsadeError(f"--radius {error}") from None
 
 
 def _number(option: str, text: str | None, example: str) -> float | None:

@@ -52,7 +52,7 @@ _WORTH = 1.03  # times the best: what is longer is not gone on from
 _SMOOTHING = (0.5, 0.25, 0.1, 0.0)  # scales, in half distances of strands
 _LONGEST = 3000.0
 _LOOSER = 1.3  # than a ropelength that is asked for, at the start
-_NEARLY = 1.05  # of it, from where on nodes stand as in the result
+_NEARLY = 1.05  # times it: from there on nodes stand as in the result
 _SPACING_RANGE = (0.03, 0.5)
 
 Progress = Callable[[float, str], None]
@@ -323,11 +323,12 @@ def _stopped(
     """Shrunk until L/h is what was asked for, None if it stays above; the last step is divided."""
     strands = spaced(loosened(loose, _LOOSER * ropelength), _COARSE)
     step = Settings(_COARSE_STIFFNESS, _LONG_STEP, 1, _COARSE_TOLERANCE, _CHANGES)
-    while _whole(strands) > _NEARLY * ropelength:
-        before = _whole(strands)
-        strands = spaced(_relaxed(strands, step)[0], _COARSE)
-        if _whole(strands) > 0.9999 * before:
-            return None
+    for _ in range(_MOST_ROUNDS * _ROUND):
+        after = spaced(_relaxed(strands, step)[0], _COARSE)
+        near = thickness(spaced(after, SPACING), 1).ropelength < _NEARLY * ropelength
+        if near or _whole(after) > 0.9999 * _whole(strands):
+            break
+        strands = after
     strands = spaced(strands, _final_spacing(strands, nodes))
     step = Settings(_stiffnesses(SPACING)[0], _SHORT_STEP, 1, _COARSE_TOLERANCE)
     for _ in range(_MOST_ROUNDS):
