@@ -28,7 +28,7 @@ register: Any = event.register
 njit: Any = numba.njit
 
 PACKAGE = Path(__file__).parent
-KERNEL_SOURCES = ("_compile.py", "assembly.py", "topology", "rod", "motion", "knots/spread.py")
+KERNEL_SOURCES = ("_compile.py", "assembly.py", "topology", "rod", "motion", "knots")
 
 
 def source_hash() -> str:

@@ -56,6 +56,13 @@ CONVERT_EXAMPLES = """Examples:
 torsade convert scan.xyz knot.csv --length-unit mm --smooth "0.1 mm" --spacing "0.1 mm"
 
 torsade convert knot.csv knot.vtk"""
+TIGHT_EXAMPLES = """Examples:
+
+torsade tight 3_1
+
+torsade tight whitehead --out whitehead.csv --picture whitehead.png
+
+torsade tight 4_1 --ropelength 50 --radius "0.2 mm" --out loose.csv"""
 
 _WHAT = Group("What to do", sort_key=1)
 _OUTPUT = Group("Input and output", sort_key=2)
@@ -81,6 +88,7 @@ def build(arguments: list[str]) -> App:
     app.command(_topology, name="topology", help_epilogue=TOPOLOGY_EXAMPLES, version_flags=[])
     app.command(_convert, name="convert", help_epilogue=CONVERT_EXAMPLES, version_flags=[])
     app.command(knots_app())
+    app.command(_tight, name="tight", help_epilogue=TIGHT_EXAMPLES, version_flags=[])
     run = App(
         name="run",
         help="Run an experiment: prison-escape (pull a bend) or tighten (pull a knot in one strand).",
@@ -227,6 +235,44 @@ def _convert(
     from torsade.cli.convert import convert
 
     return convert(given, out, length_unit, smooth, spacing, every, json, overwrite)
+
+
+def _tight(
+    given: Annotated[
+        str,
+        Parameter(
+            name="NAME|CODE|FILE",
+            allow_leading_hyphen=True,
+            help="A knot or link by name (3_1, m5_2, 3_1#4_1, L5a1, borromean) or code, as for torsade "
+            "topology, or a CSV file of closed strands.",
+        ),
+    ],
+    /,
+    *,
+    ropelength: Annotated[
+        str | None, Parameter(help="Stop where L/h has fallen to this number, such as 50.")
+    ] = None,
+    radius: Annotated[
+        str | None,
+        Parameter(help='Radius h of the fiber, such as "0.2 mm"; without it lengths are in radii.'),
+    ] = None,
+    nodes: Annotated[
+        str | None, Parameter(help="Nodes of the result [default: one every fifth of the radius].")
+    ] = None,
+    tries: Annotated[
+        str, Parameter(help="How many other shapes to look at, for a shorter one [default: 14].")
+    ] = "14",
+    out: Annotated[str | None, Parameter(help="Write the nodes to this CSV file.")] = None,
+    picture: Annotated[str | None, Parameter(help="Draw the tight knot to this PNG file.")] = None,
+    json: Annotated[bool, Parameter(help=OPTIONS["json"][1])] = False,
+) -> int:
+    """Pull a knot or link tight: the shortest closed fiber that makes it, its ropelength L/h and its writhe.
+
+    L/h is length over radius; over the diameter it is half as much. It is an upper bound of the ropelength.
+    """
+    from torsade.cli.tight import tight
+
+    return tight(given, ropelength, radius, nodes, tries, out, picture, json)
 
 
 def _protocol_command(spec: type[Spec]) -> Callable[..., int]:

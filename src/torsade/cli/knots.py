@@ -210,5 +210,3 @@ def _built(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield "strands apart", f"{found['clearance_m'] / h:.3f} h, axis to axis"
     yield "curvature", f"h kappa at most {found['h_kappa']:.3f}"
     yield "read again", "the curve is this knot"
-
-

@@ -88,7 +88,9 @@ def _build(
     radius: Annotated[str | None, Parameter(help='Fiber radius h [default: "0.2 mm"].')] = None,
     length: Annotated[
         str | None,
-        Parameter(help="Length of a closed knot, or of a knot in one strand [default: the shortest loose one]."),
+        Parameter(
+            help="Length of a closed knot, or of a knot in one strand [default: the shortest loose one]."
+        ),
     ] = None,
     lead: Annotated[
         str | None,

@@ -1,12 +1,14 @@
-"""Knots by name: the catalogue, their diagrams, fibers ready to be pulled, and measured ones cleaned."""
+"""Knots by name: the catalogue, their diagrams, fibers ready to be pulled, tight ones, and measured ones cleaned."""
 
 from torsade.knots.bends import PULLS, Bend
 from torsade.knots.build import BuiltKnot, build
 from torsade.knots.entries import KINDS, Entry, facts, variants
 from torsade.knots.finding import bend_diagram, bend_names, find, interpret, search
 from torsade.knots.measured import Cleaned, clean
+from torsade.knots.ropelength import Thickness, thickness
 from torsade.knots.sutures import suture_diagram
 from torsade.knots.tied import bend, strand, tie
+from torsade.knots.tight import TightKnot, tighten
 
 __all__ = [
     "KINDS",
@@ -15,6 +17,8 @@ __all__ = [
     "BuiltKnot",
     "Cleaned",
     "Entry",
+    "Thickness",
+    "TightKnot",
     "bend",
     "bend_diagram",
     "bend_names",
@@ -26,6 +30,8 @@ __all__ = [
     "search",
     "strand",
     "suture_diagram",
+    "thickness",
     "tie",
+    "tighten",
     "variants",
 ]
