@@ -28,7 +28,15 @@ register: Any = event.register
 njit: Any = numba.njit
 
 PACKAGE = Path(__file__).parent
-KERNEL_SOURCES = ("_compile.py", "assembly.py", "topology", "rod", "motion", "knots/spread.py")
+KERNEL_SOURCES = (
+    "_compile.py",
+    "assembly.py",
+    "topology",
+    "rod",
+    "motion",
+    "knots/band.py",
+    "knots/spread.py",
+)
 
 
 def source_hash() -> str:

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from torsade.knots.band import solve_band
 from torsade.knots.lift import lifted
-from torsade.knots.spread import LARGEST_MOVE, Laws, Strands, room_to_move, solve_band, spread
+from torsade.knots.spread import LARGEST_MOVE, Laws, Strands, room_to_move, spread
 from torsade.segments import segment_distance
 from torsade.topology import named_diagram
 from torsade.topology.measures import linking

@@ -1,7 +1,7 @@
 """The catalogue of bends as diagrams: two-strand tangles by name, each with the ends that its name pulls.
 
-What is known of each lies in `catalogue/bends.json`; see the README beside it. `torsade.knots.bend` makes fibers
-of them.
+What is known of each lies in `catalogue/bends.json`; see the README beside it. `torsade.knots.bend` makes
+fibers of them.
 """
 
 from __future__ import annotations
@@ -108,7 +108,9 @@ def usual_name(name: str) -> str:
         TorsadeError: no bend is called so.
     """
     entry, pulled = find_bend(name)
-    return entry.name if pulled == STANDING else next(w for w, p in entry.names_of_pulls.items() if p == pulled)
+    return (
+        entry.name if pulled == STANDING else next(w for w, p in entry.names_of_pulls.items() if p == pulled)
+    )
 
 
 def bend_diagram(name: str) -> Diagram:

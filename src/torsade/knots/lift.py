@@ -34,9 +34,9 @@ def angles_of_ends(diagram: Diagram, pulled: str | None) -> dict[str, tuple[floa
     """For every end the angles [rad] under which its strand leaves the knot, and under which it then goes on.
 
     The end named first in `pulled` goes on along -x, the second along +x. The others leave that line by 60
-    degrees, in the order of the diagram; where they can, they go on past the pulled end of the other strand, so
-    that their strand turns least. Forces of equal size under the first angles balance. Without `pulled` ends
-    leave evenly, the first along -x.
+    degrees, in the order of the diagram; where they can, they go on past the pulled end of the other strand,
+    so that their strand turns least. Forces of equal size under the first angles balance. Without `pulled`
+    ends leave evenly, the first along -x.
     """
     names = diagram.ends
     if pulled is None:
@@ -75,12 +75,12 @@ def lifted(diagram: Diagram, strands: Sequence[int], angles: Mapping[str, float]
     """
     drawing = packed(diagram, strands)
     is_open = [diagram.is_open(k) for k in strands]
-    inner = np.concatenate(
-        [z[2:-2] if o else z for z, o in zip(drawing.points, is_open, strict=True)]
-    )
+    inner = np.concatenate([z[2:-2] if o else z for z, o in zip(drawing.points, is_open, strict=True)])
     rim = _RIM * float(np.abs(inner).max())
-    total = sum(float(np.abs(np.diff(z[2:-2] if o else np.append(z, z[0]))).sum())
-                for z, o in zip(drawing.points, is_open, strict=True))
+    total = sum(
+        float(np.abs(np.diff(z[2:-2] if o else np.append(z, z[0]))).sum())
+        for z, o in zip(drawing.points, is_open, strict=True)
+    )
     scale = (_LENGTH + _LENGTH_PER_CROSSING * diagram.n_crossings) / total
     turn = _turns(diagram, drawing, rim, angles)
     out = []

@@ -33,18 +33,20 @@ def bend(
 ) -> BuiltBend:
     """A loose, smooth fiber of a bend of the catalogue, made by `build` of its diagram.
 
-    The clamped and the pulled end lie on the x axis and leave along it, so nothing turns the knot as a whole; the
-    free ends turn away from it by 60°. Nothing touches: parts that are not neighbours are 2.1 radii apart, and
-    radius * kappa is at most 0.5.
+    The clamped and the pulled end lie on the x axis and leave along it, so nothing turns the knot as a whole;
+    the free ends turn away from it by 60°. Nothing touches: parts that are not neighbours are 2.1 radii
+    apart, and radius * kappa is at most 0.5.
 
     Lengths are numbers in metres, or text with a unit such as "0.2 mm".
 
     Args:
         name: one of `bend_names()`, or another name of it.
         radius: fiber radius h [m].
-        lead: length from the knot to the clamped and to the pulled end [m], 5 radii or more, 16 radii by default;
-            longer where the strand needs more to come to the axis. The free ends are two and a half times as long.
-        spacing: greatest distance between nodes along a strand [m], one radius or less; half a radius by default.
+        lead: length from the knot to the clamped and to the pulled end [m], 5 radii or more, 16 radii by
+            default; longer where the strand needs more to come to the axis. The free ends are two and a half
+            times as long.
+        spacing: greatest distance between nodes along a strand [m], one radius or less; half a radius by
+        default.
         pulled: one of `PULLS`, the clamped end first; by default what the name says: "A1B0" for the thief and
             the grief, "A1B1" for a bend.
 
