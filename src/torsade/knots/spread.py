@@ -4,8 +4,9 @@ Nodes x (n, 3), in radii of the fiber, move towards balance of these forces, the
 
 - along an edge e, 1 + `EVEN` (|e|/l - 1): the tension, which shortens strands, larger in edges longer than
   their strand's mean l, so that nodes are spread evenly;
-- against bending, from the energy sum B |d|^2/2l, d being the difference of the unit tangents at a node.
-  Where the curvature, |d| over the mean of both edges, exceeds 1/rho, the excess counts with B_hard;
+- against bending, from the energy sum B |d|^2/2l^3, d being the second difference at a node. Where the curvature,
+  |d| over the product of both edges, exceeds 1/rho, the excess counts with B_hard. A closed strand shorter than a
+  circle of radius rho is not drawn together but pushed open;
 - springs of energy K l l' (R - r)^2/2 between nodes nearer than R, the distance that strands keep. Nodes of
   one strand are left out if nearer along it than the arc of radius rho and chord R.
 
@@ -46,9 +47,6 @@ EVEN_BOUND = 3.0
 LOOP = 0.5
 """Loops of less than this times the smallest radius of bending are pushed open."""
 
-
-SLACK = 0.02
-"""What is left of the stiffness of a closed strand too short to be a circle of radius rho."""
 
 FINEST = 0.25
 """Edges that are shorter in the mean count as so long, which lets strands grow that begin small [radii]."""
@@ -179,25 +177,33 @@ def _add_springs(
         diagonal[j] += 2.0 * weight
 
 
-def find_tension(laws: Laws, s: Strands, length: Floats, tension: Floats) -> None:
-    """Tension (n_strands,): less in a closed strand about to be shorter than a circle of radius rho."""
-    for k in range(tension.shape[0]):
+def find_slack(laws: Laws, s: Strands, length: Floats, slack: Floats) -> None:
+    """What shortens strands (n_strands,): 1, down to -1 in a closed one too short for a circle of rho."""
+    for k in range(slack.shape[0]):
         turns = length[k] / (2.0 * math.pi * laws.bend_radius)
-        slack = max(-1.0, min(1.0, 5.0 * (turns - 1.0))) if s.closed[k] else 1.0
-        tension[k] = laws.tension * slack if slack > 0.0 else slack
+        slack[k] = max(-1.0, min(1.0, 5.0 * (turns - 1.0))) if s.closed[k] else 1.0
 
 
 def _add_tension(
-    s: Strands, x: Floats, edge: Floats, tension: Floats, force: Floats, diagonal: Floats, next1: Floats
+    laws: Laws,
+    s: Strands,
+    x: Floats,
+    edge: Floats,
+    slack: Floats,
+    force: Floats,
+    diagonal: Floats,
+    next1: Floats,
 ) -> None:
-    """Forces of the tension (n_strands,); their matrix into diagonal and next1 (n_nodes,)."""
+    """Forces of the tension, that of laws times slack (n_strands,); their matrix into diagonal, next1."""
     for i in range(x.shape[0]):
         j = _after(s, i)
         if j < 0:
             continue
         l = edge[s.strand[i]]
         e = _distance(x, i, j)
-        t = (tension[s.strand[i]] + EVEN * max(-0.22, e / l - 1.0)) / e
+        tension = slack[s.strand[i]]
+        tension *= laws.tension if tension > 0.0 else 1.0
+        t = (tension + EVEN * max(-0.22, e / l - 1.0)) / e
         m = max(t, EVEN_BOUND / l)
         diagonal[i] += m
         diagonal[j] += m
@@ -213,7 +219,7 @@ def _add_bending(
     s: Strands,
     x: Floats,
     edge: Floats,
-    tension: Floats,
+    slack: Floats,
     force: Floats,
     diagonal: Floats,
     next1: Floats,
@@ -230,8 +236,8 @@ def _add_bending(
             d = x[i, c] - 2.0 * x[j, c] + x[k, c]
             squared += d * d
         allowed = _distance(x, i, j) * _distance(x, j, k) / laws.bend_radius
-        # Smaller second differences are also had by shrinking: a strand that is to grow has little stiffness.
-        taut = min(1.0, max(SLACK, tension[s.strand[j]] / max(laws.tension, SLACK)))
+        # Smaller second differences are also had by shrinking: a strand that is to grow has no stiffness.
+        taut = min(1.0, 1.0 + slack[s.strand[j]])
         m = laws.stiffness
         bend = laws.stiffness
         if squared > allowed * allowed:
@@ -308,7 +314,7 @@ def spread(laws: Laws, s: Strands, x: Floats, most: Index, tolerance: float) -> 
     w1, w2, room = np.empty(n), np.empty(n), np.empty(n)
     pairs = np.empty((0, 2), np.int64)
     n_strands = s.closed.shape[0]
-    tension, length, edge = np.empty(n_strands), np.empty(n_strands), np.empty(n_strands)
+    slack, length, edge = np.empty(n_strands), np.empty(n_strands), np.empty(n_strands)
     moved = 1e300
     gliding = 0
     for step in range(most):
@@ -322,9 +328,9 @@ def spread(laws: Laws, s: Strands, x: Floats, most: Index, tolerance: float) -> 
             diagonal[i], next1[i], next2[i] = 1e-9, 0.0, 0.0
             for c in range(3):
                 force[i, c] = 0.0
-        find_tension(laws, s, length, tension)
-        _add_bending(laws, s, x, edge, tension, force, diagonal, next1, next2)
-        _add_tension(s, x, edge, tension, force, diagonal, next1)
+        find_slack(laws, s, length, slack)
+        _add_bending(laws, s, x, edge, slack, force, diagonal, next1, next2)
+        _add_tension(laws, s, x, edge, slack, force, diagonal, next1)
         _add_springs(laws, s, x, pairs, edge, force, diagonal)
         room_to_move(s, x, pairs, room)
         downhill = 0.0
