@@ -111,7 +111,7 @@ def test_a_loop_becomes_a_circle_of_the_radius_allowed() -> None:
     spread(LAWS, strands_of([x]), x, 4000, 1e-6)
     r = np.linalg.norm(x - x.mean(axis=0), axis=1)
     np.testing.assert_allclose(r, r.mean(), rtol=0.02)
-    assert r.mean() == pytest.approx(LAWS.bend_radius, rel=0.15)
+    assert 0.8 * LAWS.bend_radius < r.mean() < LAWS.bend_radius
 
 
 @pytest.mark.parametrize(("n", "closed"), [(6, True), (17, True), (6, False), (17, False)])

@@ -4,9 +4,9 @@ Nodes x (n, 3), in radii of the fiber, move towards balance of these forces, the
 
 - along an edge e, 1 + `EVEN` (|e|/l - 1): the tension, which shortens strands, larger in edges longer than
   their strand's mean l, so that nodes are spread evenly;
-- against bending, from the energy sum B |d|^2/2l^3, d being the second difference at a node. Where the curvature,
-  |d| over the product of both edges, exceeds 1/rho, the excess counts with B_hard. A closed strand shorter than a
-  circle of radius rho is not drawn together but pushed open;
+- against bending, from the energy sum B |d|^2/2l^3, d being the second difference at a node. Where the
+  curvature, |d| over the product of both edges, exceeds 1/rho, the excess counts with B_hard. A closed
+  strand shorter than a circle of radius rho is not drawn together but pushed open;
 - springs of energy K l l' (R - r)^2/2 between nodes nearer than R, the distance that strands keep. Nodes of
   one strand are left out if nearer along it than the arc of radius rho and chord R.
 
