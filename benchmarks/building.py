@@ -30,7 +30,7 @@ BRAIDS = 200
 
 
 def braids(count: int, seed: int = 0) -> Iterator[tuple[str, Diagram]]:
-    """Closures of random braid words of 1 to 12 letters on 2 to 5 strands, links and split ones among them."""
+    """Closures of random braid words of 1 to 12 letters on 2 to 5 strands, split ones among them."""
     chance = random.Random(seed)
     for _ in range(count):
         strands = chance.randint(2, 5)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -104,7 +105,7 @@ def test_pieces_lie_side_by_side() -> None:
     built = build(union(named_diagram("3_1"), union(named_diagram("4_1"), Diagram.circle())), H)
     assert_clean(built)
     reach = sorted((x[:, 0].min(), x[:, 0].max()) for x in built.strands)
-    assert all(a[1] + 3 * H < b[0] for a, b in zip(reach, reach[1:], strict=False))
+    assert all(a[1] + 3 * H < b[0] for a, b in pairwise(reach))
 
 
 # --- what it does not depend on
@@ -187,7 +188,7 @@ def test_refusals_of_tangles() -> None:
         build(reef, H, pulled="A1A0")
     with pytest.raises(TorsadeError, match="give lead and tail"):
         build(reef, H, length="10 cm")
-    with pytest.raises(TorsadeError, match="lead is 0.0001 m; give 0.001 to 2 m"):
+    with pytest.raises(TorsadeError, match=r"lead is 0\.0001 m; give 0\.001 to 2 m"):
         build(reef, H, lead="0.1 mm")
 
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from torsade.knots.band import solve_band
 from torsade.knots.lift import lifted
-from torsade.knots.spread import LARGEST_MOVE, Laws, Strands, room_to_move, solve_band, spread
+from torsade.knots.spread import LARGEST_MOVE, Laws, Strands, room_to_move, spread
 from torsade.segments import segment_distance
 from torsade.topology import named_diagram
 from torsade.topology.measures import linking
@@ -110,7 +111,7 @@ def test_a_loop_becomes_a_circle_of_the_radius_allowed() -> None:
     spread(LAWS, strands_of([x]), x, 4000, 1e-6)
     r = np.linalg.norm(x - x.mean(axis=0), axis=1)
     np.testing.assert_allclose(r, r.mean(), rtol=0.02)
-    assert r.mean() == pytest.approx(LAWS.bend_radius, rel=0.15)
+    assert 0.8 * LAWS.bend_radius < r.mean() < LAWS.bend_radius
 
 
 @pytest.mark.parametrize(("n", "closed"), [(6, True), (17, True), (6, False), (17, False)])

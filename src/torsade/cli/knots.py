@@ -31,7 +31,7 @@ def list_knots(text: str, kind: str | None, json: bool) -> int:
         return 0
     if not found:
         raise TorsadeError(
-            f"nothing has {text!r} in its name; leave the text out to see all, or give part of a name such as fish"
+            f"nothing has {text!r} in its name; leave it out to see all, or give part of a name such as fish"
         )
     for kind_found in dict.fromkeys(entry.kind for entry in found):
         print(f"{kind_found}: {KINDS[kind_found]}")

@@ -1,4 +1,4 @@
-"""Knots by name: the catalogue, their diagrams, fibers ready to be pulled, tight ones, and measured ones cleaned."""
+"""Knots by name: the catalogue, their diagrams, and their fibers: ready to be pulled, tight, or measured."""
 
 from torsade.knots.bends import PULLS, Bend
 from torsade.knots.build import BuiltKnot, build

@@ -21,9 +21,9 @@ _STRAIGHT = 2.0  # part at the end, even of a lead too short for its bend [radii
 _SAMPLES = 64
 
 
-def radius_of(strands: Sequence[FloatArray]) -> float:
-    """Distance from the origin within which open strands turn back; beyond it each end only leads away."""
-    largest = 0.0
+def radius_of(strands: Sequence[FloatArray], closed: Sequence[FloatArray]) -> float:
+    """Distance from the origin within which closed strands lie and open ones turn back."""
+    largest = max((float(np.linalg.norm(x, axis=1).max()) for x in closed), default=0.0)
     for x in strands:
         r = np.linalg.norm(x, axis=1)
         inwards = int(np.argmax(np.diff(r) >= 0))

@@ -34,9 +34,9 @@ def angles_of_ends(diagram: Diagram, pulled: str | None) -> dict[str, tuple[floa
     """For every end the angles [rad] under which its strand leaves the knot, and under which it then goes on.
 
     The end named first in `pulled` goes on along -x, the second along +x. The others leave that line by 60
-    degrees, in the order of the diagram; where they can, they go on past the pulled end of the other strand, so
-    that their strand turns least. Forces of equal size under the first angles balance. Without `pulled` ends
-    leave evenly, the first along -x.
+    degrees, in the order of the diagram; where they can, they go on past the pulled end of the other strand,
+    so that their strand turns least. Forces of equal size under the first angles balance. Without `pulled`
+    ends leave evenly, the first along -x.
     """
     names = diagram.ends
     if pulled is None:

@@ -7,15 +7,16 @@ A closed piece of a diagram, or all that hangs on the circle of ends, is cut int
 - for every face a ring of vertices, one beside each vertex on its border, and one in its middle,
 - for a tangle the ends, and two vertices on each arc of the circle between them.
 
-Rings keep the triangulation simple where a face meets a crossing twice. What is outside has a ring only. There
-is one packing of circles in the unit disc, up to its own motions, with a circle for every vertex, circles of
-neighbours touching, and those of the boundary touching the unit circle (Koebe, Andreev, Thurston). In the
-hyperbolic disc a circle of radius r sees the circles of radii a and b of a triangle under the angle
+Rings keep the triangulation simple where a face meets a crossing twice. What is outside has a ring only.
+There is one packing of circles in the unit disc, up to its own motions, with a circle for every vertex,
+circles of neighbours touching, and those of the boundary touching the unit circle (Koebe, Andreev, Thurston).
+In the hyperbolic disc a circle of radius r sees the circles of radii a and b of a triangle under the angle
 
-    tan²(alpha/2) = sinh a sinh b/(sinh r sinh(r + a + b)) = R(1 - A)(1 - B)/((1 - R)(1 - R A B)),    R = e^(-2r),
+    tan²(alpha/2) = sinh a sinh b/(sinh r sinh(r + a + b)) = R(1 - A)(1 - B)/((1 - R)(1 - R A B)),    R =
+    e^(-2r),
 
-and angles around a vertex make a full turn. With u = log Y, Y = tanh(r/2), they are the gradient of a concave function
-(Colin de Verdière 1991), of which Newton's method finds the top. Circles of the boundary have Y = 1.
+and angles around a vertex make a full turn. With u = log Y, Y = tanh(r/2), they are the gradient of a concave
+function (Colin de Verdière 1991), of which Newton's method finds the top. Circles of the boundary have Y = 1.
 
 Strands run through the points where circles touch. Within a circle they are chords, and circles do not
 overlap: so chords cross at crossings only, and the drawing is the diagram.
@@ -282,7 +283,7 @@ def _from(m: complex, z: complex) -> complex:
 
 
 def _run(diagram: Diagram, strand: int, touch: _Touching) -> Iterator[complex]:
-    """The points along a strand: for each edge where it leaves a crossing, its middle, where it comes to one."""
+    """The points along a strand: where each edge leaves a crossing, its middle, where it comes to one."""
     number = touch.net.number
     for e, k in enumerate(diagram.edge_strand):
         if k != strand:
@@ -305,7 +306,7 @@ def _run(diagram: Diagram, strand: int, touch: _Touching) -> Iterator[complex]:
 def _heights(
     diagram: Diagram, strands: Sequence[int], points: Sequence[ComplexArray]
 ) -> tuple[FloatArray, ...]:
-    """Heights of the points of `_run`: both chords of a crossing lie half their mean length from the plane."""
+    """Heights of the points of `_run`: the chords of a crossing lie half their mean length off the plane."""
     chord: dict[int, list[float]] = {}
     ports: list[list[int | None]] = []
     for k, z in zip(strands, points, strict=True):

@@ -17,8 +17,8 @@ __all__ = ["reads_as"]
 def reads_as(read: Diagram, wanted: Diagram) -> bool:
     """Whether `read` can be the knot, link or tangle of `wanted`, its ends with the same names.
 
-    Certain where both reduce to one drawing. Otherwise names and Jones polynomials are compared, for a tangle those
-    of all its closures and of each strand by itself.
+    Certain where both reduce to one drawing. Otherwise names and Jones polynomials are compared, for a tangle
+    those of all its closures and of each strand by itself.
     """
     if read.ends and sorted(read.ends) != sorted(wanted.ends):
         return False

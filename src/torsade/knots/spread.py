@@ -4,14 +4,15 @@ Nodes x (n, 3), in radii of the fiber, move towards balance of these forces, the
 
 - along an edge e, 1 + `EVEN` (|e|/l - 1): the tension, which shortens strands, larger in edges longer than
   their strand's mean l, so that nodes are spread evenly;
-- against bending, from the energy sum B |d|^2/2l, d being the difference of the unit tangents at a node. Where
-  the curvature, |d| over the mean of both edges, exceeds 1/rho, the excess counts with B_hard;
-- springs of energy K l l' (R - r)^2/2 between nodes nearer than R, the distance that strands keep. Nodes of one
-  strand are left out if nearer along it than the arc of radius rho and chord R.
+- against bending, from the energy sum B |d|^2/2l^3, d being the second difference at a node. Where the
+  curvature, |d| over the product of both edges, exceeds 1/rho, the excess counts with B_hard. A closed
+  strand shorter than a circle of radius rho is not drawn together but pushed open;
+- springs of energy K l l' (R - r)^2/2 between nodes nearer than R, the distance that strands keep. Nodes of
+  one strand are left out if nearer along it than the arc of radius rho and chord R.
 
 **No strand passes through another.** In a step every node moves less than half the distance of each edge at
-it to the edges that share no node with it. While a node moves straight, a point of an edge moves no farther than
-the farther of the edge's nodes. So two edges that share no node approach each other by less than their
+it to the edges that share no node with it. While a node moves straight, a point of an edge moves no farther
+than the farther of the edge's nodes. So two edges that share no node approach each other by less than their
 distance, and do not meet. Neighbours on a strand could meet only by folding back onto each other; then an end
 of the shorter lies on the longer, and the next edge at that end, which shares no node with the longer, meets
 it: that is excluded, too.
@@ -26,7 +27,8 @@ import numpy as np
 
 from torsade._compile import compile_kernels
 from torsade.arrays import Bools, Floats, Index, Ints
-from torsade.motion.guard import segment_distance
+from torsade.knots.band import solve_band
+from torsade.rod.distance import segment_distance
 from torsade.rod.neighbours import near_points
 
 LARGEST_MOVE = 0.6  # [radii]
@@ -46,15 +48,12 @@ LOOP = 0.5
 """Loops of less than this times the smallest radius of bending are pushed open."""
 
 
-SLACK = 0.02
-"""What is left of the stiffness of a closed strand too short to be a circle of radius rho."""
-
 FINEST = 0.25
 """Edges that are shorter in the mean count as so long, which lets strands grow that begin small [radii]."""
 
 
 class Laws(NamedTuple):
-    """Tension, B and B_hard [radii^2], K [1/radii^3], R and rho [radii] of the forces, in units of the tension."""
+    """Tension, B and B_hard [radii^2], K [1/radii^3], R and rho [radii], in units of the tension."""
 
     tension: float
     stiffness: float
@@ -67,7 +66,8 @@ class Laws(NamedTuple):
 class Strands(NamedTuple):
     """Which nodes follow each other: strand k has the nodes from first[k] to before first[k + 1].
 
-    first (n_strands + 1,), closed (n_strands,), strand (n_nodes,) of each node, held (n_nodes,): may not move.
+    first (n_strands + 1,), closed (n_strands,), strand (n_nodes,) of each node, held (n_nodes,): may not
+    move.
     """
 
     first: Ints
@@ -77,7 +77,7 @@ class Strands(NamedTuple):
 
 
 def strand_lengths(s: Strands, x: Floats, length: Floats, edge: Floats) -> None:
-    """Lengths of the strands and their mean edges, at least `FINEST`, into length and edge (n_strands,) [radii]."""
+    """Lengths of strands and their mean edges, at least `FINEST`, into length and edge (n_strands,)."""
     length[:] = 0.0
     for i in range(x.shape[0]):
         j = _after(s, i)
@@ -115,7 +115,7 @@ def _apart(s: Strands, i: Index, j: Index) -> Index:
 
 
 def room_to_move(s: Strands, x: Floats, pairs: Ints, room: Floats) -> None:
-    """How far [radii] nodes may move, into room (n_nodes,): SHARE of the distance of edges that share no node.
+    """How far nodes may move, into room (n_nodes,): SHARE of the distance of edges that share no node.
 
     Edge i runs from node i to the next; pairs (n_pairs, 2) of edges hold all that are nearer than twice
     LARGEST_MOVE.
@@ -177,25 +177,33 @@ def _add_springs(
         diagonal[j] += 2.0 * weight
 
 
-def find_tension(laws: Laws, s: Strands, length: Floats, tension: Floats) -> None:
-    """Tension (n_strands,): one, and less in a closed strand about to get shorter than a circle of radius rho."""
-    for k in range(tension.shape[0]):
+def find_slack(laws: Laws, s: Strands, length: Floats, slack: Floats) -> None:
+    """What shortens strands (n_strands,): 1, down to -1 in a closed one too short for a circle of rho."""
+    for k in range(slack.shape[0]):
         turns = length[k] / (2.0 * math.pi * laws.bend_radius)
-        slack = max(-1.0, min(1.0, 5.0 * (turns - 1.0))) if s.closed[k] else 1.0
-        tension[k] = laws.tension * slack if slack > 0.0 else slack
+        slack[k] = max(-1.0, min(1.0, 5.0 * (turns - 1.0))) if s.closed[k] else 1.0
 
 
 def _add_tension(
-    s: Strands, x: Floats, edge: Floats, tension: Floats, force: Floats, diagonal: Floats, next1: Floats
+    laws: Laws,
+    s: Strands,
+    x: Floats,
+    edge: Floats,
+    slack: Floats,
+    force: Floats,
+    diagonal: Floats,
+    next1: Floats,
 ) -> None:
-    """Forces of the tension (n_strands,); their matrix into diagonal and next1 (n_nodes,), couplings to the next."""
+    """Forces of the tension, that of laws times slack (n_strands,); their matrix into diagonal, next1."""
     for i in range(x.shape[0]):
         j = _after(s, i)
         if j < 0:
             continue
         l = edge[s.strand[i]]
         e = _distance(x, i, j)
-        t = (tension[s.strand[i]] + EVEN * max(-0.22, e / l - 1.0)) / e
+        tension = slack[s.strand[i]]
+        tension *= laws.tension if tension > 0.0 else 1.0
+        t = (tension + EVEN * max(-0.22, e / l - 1.0)) / e
         m = max(t, EVEN_BOUND / l)
         diagonal[i] += m
         diagonal[j] += m
@@ -211,13 +219,13 @@ def _add_bending(
     s: Strands,
     x: Floats,
     edge: Floats,
-    tension: Floats,
+    slack: Floats,
     force: Floats,
     diagonal: Floats,
     next1: Floats,
     next2: Floats,
 ) -> None:
-    """Forces against bending; their matrix into diagonal and next1, next2 (n_nodes,), couplings along a strand."""
+    """Forces against bending; their matrix into diagonal, next1 and next2 (n_nodes,)."""
     for i in range(x.shape[0]):
         j = _after(s, i)
         k = _after(s, j) if j >= 0 else j
@@ -228,8 +236,8 @@ def _add_bending(
             d = x[i, c] - 2.0 * x[j, c] + x[k, c]
             squared += d * d
         allowed = _distance(x, i, j) * _distance(x, j, k) / laws.bend_radius
-        # Smaller second differences are also had by shrinking: a strand that is to grow has little stiffness.
-        taut = min(1.0, max(SLACK, tension[s.strand[j]] / max(laws.tension, SLACK)))
+        # Smaller second differences are also had by shrinking: a strand that is to grow has no stiffness.
+        taut = min(1.0, 1.0 + slack[s.strand[j]])
         m = laws.stiffness
         bend = laws.stiffness
         if squared > allowed * allowed:
@@ -251,78 +259,6 @@ def _add_bending(
             force[k, c] -= turn
 
 
-def solve_band(
-    first: Index,
-    last: Index,
-    diagonal: Floats,
-    next1: Floats,
-    next2: Floats,
-    w1: Floats,
-    w2: Floats,
-    y: Floats,
-) -> None:
-    """Solve in place for nodes from first to before last: symmetric, two neighbours on each side, cyclic.
-
-    next1, next2 (n,) couple a node with the next and the one after; those of the last nodes go round to the
-    first. y (n, 3) holds the right side, then the solution. Eliminates from the first node on; the last two
-    nodes see all others through w1, w2 (n,), which are scratch. At least 5 nodes.
-    """
-    p = last - 2
-    q = last - 1
-    for i in range(first, last):
-        w1[i] = 0.0
-        w2[i] = 0.0
-    # Couplings of the last two nodes to the first ones; those to their own neighbours are next1, next2.
-    w1[first] += next2[p]
-    w2[first] += next1[q]
-    w2[first + 1] += next2[q]
-    corner = next1[p]
-    w1[p - 2] += next2[p - 2]
-    w1[p - 1] += next1[p - 1]
-    w2[p - 1] += next2[p - 1]
-    for i in range(first, p):
-        d = 1.0 / diagonal[i]
-        a = next1[i] if i + 1 < p else 0.0
-        b = next2[i] if i + 2 < p else 0.0
-        u = w1[i]
-        v = w2[i]
-        if i + 1 < p:
-            diagonal[i + 1] -= a * a * d
-            w1[i + 1] -= a * u * d
-            w2[i + 1] -= a * v * d
-            for c in range(3):
-                y[i + 1, c] -= a * d * y[i, c]
-        if i + 2 < p:
-            next1[i + 1] -= a * b * d
-            diagonal[i + 2] -= b * b * d
-            w1[i + 2] -= b * u * d
-            w2[i + 2] -= b * v * d
-            for c in range(3):
-                y[i + 2, c] -= b * d * y[i, c]
-        diagonal[p] -= u * u * d
-        diagonal[q] -= v * v * d
-        corner -= u * v * d
-        for c in range(3):
-            y[p, c] -= u * d * y[i, c]
-            y[q, c] -= v * d * y[i, c]
-    d = 1.0 / diagonal[p]
-    diagonal[q] -= corner * corner * d
-    for c in range(3):
-        y[q, c] = (y[q, c] - corner * d * y[p, c]) / diagonal[q]
-        y[p, c] = (y[p, c] - corner * y[q, c]) * d
-    for i in range(p - 1, first - 1, -1):
-        a = next1[i] if i + 1 < p else 0.0
-        b = next2[i] if i + 2 < p else 0.0
-        d = 1.0 / diagonal[i]
-        for c in range(3):
-            total = y[i, c] - w1[i] * y[p, c] - w2[i] * y[q, c]
-            if i + 1 < p:
-                total -= a * y[i + 1, c]
-            if i + 2 < p:
-                total -= b * y[i + 2, c]
-            y[i, c] = total * d
-
-
 def _midpoints(s: Strands, x: Floats, mid: Floats) -> float:
     """Middles of the edges (n_nodes, 3), an end itself where none follows; returns the longest edge."""
     longest = 0.0
@@ -336,7 +272,7 @@ def _midpoints(s: Strands, x: Floats, mid: Floats) -> float:
 
 
 def _order(pairs: Ints) -> None:
-    """Sort pairs (n_pairs, 2), ordered by the first, by the second: sums are then those of the mirror image."""
+    """Sort pairs (n_pairs, 2) by the second, too: sums are then those of the mirror image."""
     for n in range(1, pairs.shape[0]):
         i, j = pairs[n, 0], pairs[n, 1]
         m = n - 1
@@ -378,7 +314,7 @@ def spread(laws: Laws, s: Strands, x: Floats, most: Index, tolerance: float) -> 
     w1, w2, room = np.empty(n), np.empty(n), np.empty(n)
     pairs = np.empty((0, 2), np.int64)
     n_strands = s.closed.shape[0]
-    tension, length, edge = np.empty(n_strands), np.empty(n_strands), np.empty(n_strands)
+    slack, length, edge = np.empty(n_strands), np.empty(n_strands), np.empty(n_strands)
     moved = 1e300
     gliding = 0
     for step in range(most):
@@ -392,9 +328,9 @@ def spread(laws: Laws, s: Strands, x: Floats, most: Index, tolerance: float) -> 
             diagonal[i], next1[i], next2[i] = 1e-9, 0.0, 0.0
             for c in range(3):
                 force[i, c] = 0.0
-        find_tension(laws, s, length, tension)
-        _add_bending(laws, s, x, edge, tension, force, diagonal, next1, next2)
-        _add_tension(s, x, edge, tension, force, diagonal, next1)
+        find_slack(laws, s, length, slack)
+        _add_bending(laws, s, x, edge, slack, force, diagonal, next1, next2)
+        _add_tension(laws, s, x, edge, slack, force, diagonal, next1)
         _add_springs(laws, s, x, pairs, edge, force, diagonal)
         room_to_move(s, x, pairs, room)
         downhill = 0.0
@@ -421,17 +357,5 @@ def spread(laws: Laws, s: Strands, x: Floats, most: Index, tolerance: float) -> 
 compile_kernels(
     __name__,
     inline=("_distance", "_after", "_apart"),
-    owning=(
-        "spread",
-        "strand_lengths",
-        "room_to_move",
-        "solve_band",
-        "_add_springs",
-        "_add_tension",
-        "find_tension",
-        "_add_bending",
-        "_midpoints",
-        "_stopped",
-        "_order",
-    ),
+    owning=("spread",),
 )

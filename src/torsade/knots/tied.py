@@ -51,8 +51,8 @@ def bend(
     """A loose, smooth fiber of a bend, or of another knot of two strands: a suture, a variant of the thesis.
 
     The clamped and the pulled end lie on the x axis and leave along it, so nothing turns the knot as a whole;
-    the free ends turn away from it by 60 degrees. Nothing touches: parts that are not neighbours are 2.1 radii
-    apart, and h kappa is at most 0.5.
+    the free ends turn away from it by 60 degrees. Nothing touches: parts that are not neighbours are 2.1
+    radii apart, and h kappa is at most 0.5.
 
     Lengths are numbers in metres, or text with a unit such as "0.2 mm".
 
@@ -60,12 +60,12 @@ def bend(
         name: such as "reef", "zeppelin", "alpine24" or "5,-3".
         radius: fiber radius h [m].
         lead: length from the knot to the clamped and to the pulled end [m], 5 radii or more, 16 radii by
-            default; longer where the strand needs more to come to the axis. Free ends are two and a half times as
-            long.
+            default; longer where the strand needs more to come to the axis. Free ends are two and a half
+            times as long.
         spacing: greatest distance between nodes along a strand [m], one radius or less; half a radius by
             default.
-        pulled: the clamped end, then the pulled end, one of `PULLS`; by default what the name says: "A1B0" for
-            the thief and the grief, "A1B1" for a bend.
+        pulled: the clamped end, then the pulled end, one of `PULLS`; by default what the name says: "A1B0"
+            for the thief and the grief, "A1B1" for a bend.
 
     Raises:
         TorsadeError: a name or a pull that is not known, or a length out of range.

@@ -44,7 +44,7 @@ class PrisonEscape(Spec):
     protocol: Literal["prison-escape"] = "prison-escape"
     knot: str | None = Field(
         None,
-        description="Bend (reef, thief, granny, carrick, zeppelin ...), suture (5,-3), or a code of two strands.",
+        description="Bend (reef, thief, granny, carrick, zeppelin ...), suture (5,-3), or a code.",
     )
     centerline: str | None = Field(
         None, description="File of two strands (.csv, .xyz, .obj, .vect, .npz or .npy), in place of a knot."
