@@ -25,7 +25,7 @@ from torsade.knots.reading import reads_as
 from torsade.knots.shape import Shapes, shapes, standing, usual
 from torsade.topology.diagram import Diagram
 from torsade.topology.projection import project
-from torsade.topology.simplify import untwisted
+from torsade.topology.simplify import simplify, untwisted
 
 __all__ = ["CLEARANCE", "H_KAPPA", "BuiltKnot", "build"]
 
@@ -148,7 +148,27 @@ def _built(
     pulled: str | None,
 ) -> BuiltKnot:
     """`build` of arguments that are checked; lengths in radii. The outer faces are told apart by `outer`."""
-    drawn = standing(untwisted(diagram))
+    arguments = h, total, lead, tail, spacing, pulled
+    try:
+        return _made(standing(untwisted(diagram)), *arguments)
+    except TorsadeError:
+        simpler = simplify(diagram)
+        if simpler.n_crossings == diagram.n_crossings:
+            raise
+        # What a drawing shows small may not get apart; a drawing with fewer crossings is easier.
+        return _made(standing(untwisted(simpler)), *arguments)
+
+
+def _made(
+    drawn: Diagram,
+    h: float,
+    total: float | None,
+    lead: float,
+    tail: float,
+    spacing: float,
+    pulled: str | None,
+) -> BuiltKnot:
+    """The fiber of a diagram without nugatory crossings."""
     closed = tuple(not drawn.is_open(k) for k in range(drawn.n_strands))
     make = _Maker(shapes(drawn, drawn.outer, pulled), closed, spacing)
     if total is None:
