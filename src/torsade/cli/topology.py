@@ -15,7 +15,6 @@ import numpy as np
 
 from torsade.cli.subject import Subject, subject
 from torsade.errors import TorsadeError
-from torsade.knots.bends import find_bend
 from torsade.topology.codes import to_conway, to_dt, to_gauss, to_open_pd, to_pd
 from torsade.topology.counting import State, circulation_range, pull_choices, state
 from torsade.topology.diagram import Diagram
@@ -23,7 +22,7 @@ from torsade.topology.identify import Identity, identify, identify_open, identif
 from torsade.topology.invariants import Laurent, alexander, determinant, jones, oriented, signature
 from torsade.topology.measures import average_crossing_number, writhe_matrix
 from torsade.topology.simplify import simplify
-from torsade.topology.tangle import closures
+from torsade.topology.tangle import close, closures
 
 __all__ = ["report", "topology"]
 
@@ -161,8 +160,17 @@ def _of_tangle(given: Subject, drawn: Diagram, simpler: Diagram, drawings: int) 
         ],
         "strand_types": [_identity(one) for one in identify_strands(drawn)],
         "closures": [{"joins": ["-".join(two) for two in joins], **_identity(one)} for joins, one in closed],
-        **dict.fromkeys(("names", "certain", "reason", "alexander", "determinant", "signature", "jones")),
+        **_of_closure(drawn),
     }
+
+
+def _of_closure(drawn: Diagram) -> dict[str, Any]:
+    """Names and invariants of a knot in one strand: those of the closed knot, which is the only one."""
+    keys = ("names", "certain", "reason", "alexander", "determinant", "signature", "jones")
+    if len(drawn.ends) != 2:
+        return dict.fromkeys(keys)
+    closed = _of_closed(simplify(close(drawn, [(drawn.ends[0], drawn.ends[1])])))
+    return {key: closed[key] for key in keys}
 
 
 def _few(drawn: Diagram) -> bool:
@@ -171,7 +179,7 @@ def _few(drawn: Diagram) -> bool:
 
 
 def _pull_name(given: Subject, pulled: str) -> str | None:
-    return find_bend(given.given)[0].pulls.get(pulled) if given.kind == "bend" else None
+    return given.pulls.get(pulled)
 
 
 def _of_closed(simpler: Diagram) -> dict[str, Any]:
