@@ -10,7 +10,6 @@ from torsade.errors import TorsadeError
 from torsade.topology import Diagram, identify, is_isomorphic
 from torsade.topology.codes import (
     code_kind,
-    from_braid,
     from_conway,
     from_gauss,
     from_pd,
@@ -36,7 +35,6 @@ TREFOIL = [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]
         ("[[1,5,2],[3,1,4,6]]", "PD code"),
         ("O1U2O3U1O2U3", "Gauss code"),
         ("BR[2,{1,1,1}]", "braid word"),
-        ("T(3,4)", "torus link"),
         ("3_1", None),
         ("trefoil", None),
         ("|", None),
@@ -57,7 +55,6 @@ def test_what_a_text_is_taken_for(text: str, kind: str | None) -> None:
         "{1,1,1}",
         "BR[2,{1,1,1}]",
         "BR(2, [1, 1, 1])",
-        "T(2,3)",
         "O1+U2+O3+U1+O2+U3+",
         "o1+u2+o3+u1+o2+u3+",
         "O1U2O3U1O2U3",
@@ -69,10 +66,7 @@ def test_ways_to_write_a_right_handed_trefoil(text: str) -> None:
     assert is_isomorphic(from_text(text), from_pd(TREFOIL))
 
 
-def test_torus_links_and_braids_of_given_width() -> None:
-    assert is_isomorphic(from_text("T(3,-2)"), from_braid([-1, -2] * 2))
-    assert identify(from_text("T[3,4]")).names == ("8_19",)
-    assert from_text("T(3,0)").circles == 3
+def test_braids_of_given_width() -> None:
     assert from_text("BR[4,{1}]").circles == 2
 
 
@@ -124,8 +118,6 @@ def test_numbers_that_may_be_one_or_two_are_refused(text: str) -> None:
         ("braid: 1000000", "more than 500 strands"),
         ("braid: 1 4000", "more than 500 strands"),
         ("BR[999999999,{1}]", "more than 500 strands"),
-        ("T(2,999999999)", "more than 500 crossings"),
-        ("T(99999,0)", "more than 500 strands"),
         ("[1 999999999]", "the Conway code has more than 500 crossings"),
         ("[1 99999]", "more than 500 crossings"),
         ("[1 " + "9" * 5000 + "]", "more than 500 crossings"),
@@ -164,10 +156,9 @@ def test_signs_do_not_nest() -> None:
 def test_a_code_of_the_greatest_size_is_read() -> None:
     size: list[Diagram] = [
         from_text("{" + ",".join(["1", "-2"] * (MOST // 2)) + "}"),
-        from_text(f"T(2,{MOST})"),
         from_text("[" + " ".join(["1"] * MOST) + "]"),
     ]
-    assert [d.n_crossings for d in size] == [MOST] * 3
+    assert [d.n_crossings for d in size] == [MOST] * 2
 
 
 # --- refusals
@@ -189,8 +180,6 @@ def test_a_code_of_the_greatest_size_is_read() -> None:
         ("{1,1,1", "has a bracket that is not closed"),
         ("O1+ U2 O3+ U1+ O2+ U3+", "'U2' in the Gauss code is not understood"),
         ("O1 U1 X", "'X' in the Gauss code is not understood"),
-        ("T(3)", "the torus link 'T(3)' is not understood"),
-        ("T(0,3)", "give two whole numbers, the first positive"),
         ("BR[2,{1,2}]", "a braid of 2 strands has generators 1 to 1"),
     ],
 )

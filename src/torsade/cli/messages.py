@@ -13,13 +13,13 @@ if TYPE_CHECKING:
 
 __all__ = ["parse_error", "say"]
 
-TOPOLOGY_OPTIONS = ("--pulled", "--drawings", "--length-unit")
+TOPOLOGY_OPTIONS = ("--pulled", "--drawings", "--direction", "--length-unit")
 """Options of `torsade topology` that take a value."""
 
 
 def say(message: str) -> None:
     """Print one sentence on the standard error stream."""
-    sentence = " ".join(message.split()).rstrip(".")
+    sentence = " ".join(message.split()).removesuffix(".")
     print(f"torsade: {sentence}{'' if sentence.endswith('?') else '.'}", file=sys.stderr)
 
 

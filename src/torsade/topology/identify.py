@@ -151,7 +151,7 @@ def _mirrored(name: str) -> str:
 
 
 def _choices(combine: Callable[[list[str]], str], ways: Sequence[set[str]]) -> set[str]:
-    """The names of what is put together of one of each; some too many, if there are more than `MOST_NAMES`."""
+    """The names of what is put together of one of each; not all, if there are more than `MOST_NAMES`."""
     total, *others = ways
     for more in others:
         total = {combine([*one.split(" ⊔ "), other]) for one in total for other in more}

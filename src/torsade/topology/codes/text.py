@@ -8,7 +8,6 @@
 | Gauss, signed | `O1+ U2+ O3+ U1+ O2+ U3+`, with a bar between strands |
 | Gauss, unsigned | `Gauss: [-1,2,-3,1,-2,3]`, over negative; `O1U2O3U1O2U3`; of a link `[[1,-2],[-1,2]]` |
 | braid | `{1,-2,1,-2}`, `braid: 1 -2 1 -2`, `BR[3,{1,-2,1,-2}]` with the number of strands |
-| torus knot or link | `T(3,4)`: the braid of 3 strands 1 2 1 2 1 2 1 2; `T(3,-4)` is its mirror image |
 | Conway notation | `[3 2]`, `C[21;3;2]`, `Conway: 3 2` |
 
 In brackets and round brackets stand a PD code, if the inner ones are a list with rows of four, and else
@@ -32,7 +31,7 @@ from torsade.topology.diagram import Diagram
 
 __all__ = ["BEGINNINGS", "code_kind", "from_text", "leaves_mirror_open"]
 
-BEGINNINGS = "X[ or [[ for PD, DT:, Gauss: or O1+, braid: or {, T( for a torus knot, C[ for Conway notation"
+BEGINNINGS = "X[ or [[ for PD, DT:, Gauss: or O1+, braid: or {, C[ for Conway notation"
 """How codes begin, for error messages."""
 
 LONGEST = 20_000
@@ -44,7 +43,6 @@ _KINDS: tuple[tuple[str, str], ...] = (
     ("DT code", r"DT\b[\s:]*"),
     ("Gauss code", r"Gauss\b[\s:]*|(?=[OU]\d)"),
     ("braid word", r"(?:braid|BR)\b[\s:]*|(?=\{)"),
-    ("torus link", r"T(?=\s*[(\[])"),
     ("PD code", r"PD\b[\s:]*|(?=X\s*_?\s*[\[({])|(?=\[\s*\[|\(\s*[\[(])"),
     ("Conway code", r"(?:Conway|C(?=\s*[\[:]))[\s:]*|(?=\[)"),
 )
@@ -85,8 +83,8 @@ def from_text(text: str) -> Diagram:
 
     >>> from_text("X[1,5,2,4] X[3,1,4,6] X[5,3,6,2]").signs
     (1, 1, 1)
-    >>> [from_text(code).n_crossings for code in ("{1,-2,1,-2}", "DT: [4,6,2]", "[3 2]", "T(3,4)")]
-    [4, 3, 5, 8]
+    >>> [from_text(code).n_crossings for code in ("{1,-2,1,-2}", "DT: [4,6,2]", "[3 2]")]
+    [4, 3, 5]
 
     Raises:
         TorsadeError: text in none of these forms, a code that is too large, or one that `from_pd` or its
@@ -198,20 +196,6 @@ def _braid(body: str, kind: str) -> Diagram:
     return from_braid(letters, int(counted[1]) if counted else None)
 
 
-def _torus(body: str, kind: str) -> Diagram:
-    numbers = _integers(body.strip("[]() "), kind, "those in T(3,4)")
-    if len(numbers) != 2 or numbers[0] < 1:
-        raise TorsadeError(
-            f"the {kind} {quoted('T' + body)} is not understood; give two whole numbers, the first positive, "
-            "such as T(3,4) or T(3,-4)"
-        )
-    width, times = numbers
-    limited(width, "strands", kind)
-    limited((width - 1) * abs(times), "crossings", kind)
-    sign = 1 if times > 0 else -1
-    return from_braid([sign * k for k in range(1, width)] * abs(times), width)
-
-
 def _conway(body: str, kind: str) -> Diagram:
     return from_conway(body)
 
@@ -221,7 +205,6 @@ _READERS: dict[str, Callable[[str, str], Diagram]] = {
     "DT code": _dt,
     "Gauss code": _gauss,
     "braid word": _braid,
-    "torus link": _torus,
     "Conway code": _conway,
 }
 
