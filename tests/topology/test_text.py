@@ -6,6 +6,7 @@ import time
 
 import pytest
 
+from topology.drawings import closed_knots
 from torsade.errors import TorsadeError
 from torsade.topology import Diagram, identify, is_isomorphic
 from torsade.topology.codes import (
@@ -203,3 +204,13 @@ def test_counting_passages_is_quick() -> None:
     begin = time.perf_counter()
     assert from_gauss(code).n_crossings == 2000
     assert time.perf_counter() - begin < 1
+
+
+@pytest.mark.parametrize("name", closed_knots())
+def test_conway_notation_of_the_tables(name: str) -> None:
+    """All 249 in brackets, with semicolons and with commas; the mirror image is left open."""
+    code = closed_knots()[name]["conway"]
+    for text in (f"[{code}]", f"[{code.replace(';', ',')}]", f"C[{code}]"):
+        assert code_kind(text) == "Conway code"
+        found = identify(from_text(text)).names[0]
+        assert found.removeprefix("m") == name
