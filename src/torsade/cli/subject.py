@@ -11,8 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from torsade.centerline import Centerline, read_csv
+from torsade.centerline import Centerline
 from torsade.errors import TorsadeError, quoted
+from torsade.files import SUFFIXES, read_centerline
 from torsade.knots.finding import interpret
 from torsade.topology.codes import BEGINNINGS, code_kind, leaves_mirror_open
 from torsade.topology.diagram import Diagram, strand_name
@@ -65,10 +66,11 @@ def subject(given: str, length_unit: str = "m", direction: str | None = None) ->
     """
     text = given.strip()
     if not text:
-        raise TorsadeError("nothing is given; give a name such as reef or 5_1, a code, or a CSV file")
+        raise TorsadeError("nothing is given; give a name such as reef or 5_1, a code, or a file of curves")
     if re.match(r"--?[a-z]", text):
         raise TorsadeError(f"topology has no option {quoted(text)}; see torsade topology --help")
-    if text.lower().endswith(".csv") or "/" in text or _is_file(text):
+    # A file named reef does not stand in the way of the reef.
+    if text.lower().endswith(SUFFIXES) or "/" in text or _is_other_file(text):
         return _file(given, length_unit, direction)
     if direction is not None:
         raise TorsadeError(
@@ -91,17 +93,17 @@ def subject(given: str, length_unit: str = "m", direction: str | None = None) ->
     )
 
 
-def _is_file(text: str) -> bool:
-    """Whether a file is called so; a code may be longer than the name of any file."""
+def _is_other_file(text: str) -> bool:
+    """Whether a text names a file of another kind, to be told so; a code may be longer than a name."""
     try:
-        return Path(text).is_file()
-    except (OSError, ValueError):
+        return re.fullmatch(r"\S+\.\w{1,9}", text) is not None and Path(text).is_file()
+    except OSError:
         return False
 
 
 def _file(path: str, unit: str, direction: str | None) -> Subject:
     along = None if direction in (None, "fewest") else _vector(str(direction))
-    centerline = read_csv(path, unit)
+    centerline = read_centerline(path, unit)
     notes = tuple(_gaps(path, centerline))
     look = clearest if direction == "fewest" else partial(project, direction=along)
     seen = look(centerline.strands, centerline.closed)

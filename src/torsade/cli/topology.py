@@ -7,15 +7,16 @@ from __future__ import annotations
 
 import json as json_format
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from itertools import islice
 from typing import Any
 
 import numpy as np
 
+from torsade.cli.codes import codes_of
 from torsade.cli.subject import Subject, subject
 from torsade.errors import TorsadeError
-from torsade.topology.codes import to_conway, to_dt, to_gauss, to_open_pd, to_pd
+from torsade.topology.codes import to_pd
 from torsade.topology.counting import State, circulation_range, pull_choices, state
 from torsade.topology.diagram import Diagram
 from torsade.topology.identify import Identity, identify, identify_open, identify_strands
@@ -84,7 +85,7 @@ def report(given: Subject, pulled: str | None, drawings: int) -> dict[str, Any]:
         "faces": _faces(counts),
         "outside": _outside(diagram),
         "fewest": _counted(state(simpler)),
-        "codes": _codes(simplify(diagram)),
+        "codes": codes_of(simplify(diagram)),
     }
     found |= (
         _of_tangle(given, drawn, simpler, drawings)
@@ -92,30 +93,6 @@ def report(given: Subject, pulled: str | None, drawings: int) -> dict[str, Any]:
         else _of_closed(simpler, None if given.handed else drawn)
     )
     return found | _of_curves(given)
-
-
-def _codes(simpler: Diagram) -> dict[str, str | None]:
-    """Codes of the drawing with fewest crossings, as `from_text` reads them; None where there is none."""
-    if simpler.ends:
-        return {"pd": _pd_text(to_open_pd(simpler)), "gauss": None, "dt": None, "conway": None}
-    writers: dict[str, Callable[[Diagram], str]] = {
-        "pd": lambda d: _pd_text(to_pd(d)),
-        "gauss": to_gauss,
-        "dt": lambda d: f"DT: {to_dt(d)}",
-        "conway": lambda d: f"[{to_conway(d)}]",
-    }
-    return {name: _if_any(write, simpler) for name, write in writers.items()}
-
-
-def _if_any(write: Callable[[Diagram], str], diagram: Diagram) -> str | None:
-    try:
-        return write(diagram)
-    except TorsadeError:
-        return None
-
-
-def _pd_text(rows: Iterable[Iterable[object]]) -> str:
-    return " ".join(f"X[{','.join(map(str, row))}]" for row in rows)
 
 
 def _pulled(given: Subject, pulled: str | None) -> str | None:

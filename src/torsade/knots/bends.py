@@ -12,7 +12,10 @@ from types import MappingProxyType
 from torsade.topology.codes import from_gauss
 from torsade.topology.diagram import Diagram
 
-__all__ = ["Bend", "bends"]
+__all__ = ["PULLS", "Bend", "bends"]
+
+PULLS = ("A1B1", "A1B0", "A0B1", "A0B0")
+"""Pairs of ends: the first is clamped, the second pulled."""
 
 
 @dataclass(frozen=True)

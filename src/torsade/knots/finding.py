@@ -16,7 +16,7 @@ from torsade.topology.diagram import Diagram
 from torsade.topology.named import looks_like_a_name, named_diagram
 from torsade.topology.tangle import cut
 
-__all__ = ["bend_diagram", "bend_names", "find", "interpret", "search"]
+__all__ = ["bend_diagram", "bend_names", "find", "interpret", "known_bend", "known_strand", "search"]
 
 _SUTURE = r"\(?\s*([+-]?\d{1,6})\s*,\s*([+-]?\d{1,6})\s*\)?"
 
@@ -119,6 +119,49 @@ def bend_diagram(name: str) -> Diagram:
             f"{quoted(name)} is no bend, but {entry.title}; choose one of {', '.join(bend_names())}"
         )
     return entry.diagram.pulled(str(entry.pulled))
+
+
+def known_bend(name: str) -> Entry:
+    """The entry of a knot of two strands.
+
+    Raises:
+        TorsadeError: nothing is called so, or what is has not two strands with ends.
+    """
+    entry = interpret(name)
+    if len(entry.diagram.ends) == 4:
+        return entry
+    advice = f"give one of {', '.join(bend_names())}, a suture such as 5,-3, or a centerline of your own"
+    if len(entry.diagram.ends) == 2:
+        advice = f"give torsade run tighten --knot {_word(name)}, or one of {', '.join(bend_names())}"
+    raise TorsadeError(f"{quoted(name)} is no bend of two strands, but {_what(entry)}; {advice}")
+
+
+def known_strand(name: str) -> Entry:
+    """The entry of a knot in one strand.
+
+    Raises:
+        TorsadeError: nothing is called so, or what is has not one strand with two ends.
+    """
+    entry = interpret(name)
+    if len(entry.diagram.ends) == 2:
+        return entry
+    known = ", ".join(found.name for found in search(kind="strand"))
+    advice = f"give {known}, or a closed knot cut open such as 'open 5_2'"
+    if len(entry.diagram.ends) == 4:
+        advice = f"give torsade run prison-escape --knot {_word(name)}"
+    elif entry.kind == "closed":
+        advice = f"give 'open {entry.name}' for that knot cut open"
+    raise TorsadeError(f"{quoted(name)} is no knot in one strand, but {_what(entry)}; {advice}")
+
+
+def _word(name: str) -> str:
+    """A name as it is typed in a shell."""
+    return repr(name) if re.search(r"[^\w,-]", name) else name
+
+
+def _what(entry: Entry) -> str:
+    n = len(entry.diagram.ends) // 2
+    return f"a {entry.kind} ({entry.title}) " + (f"of {n} open strands" if n else "without ends")
 
 
 @lru_cache(maxsize=1)
