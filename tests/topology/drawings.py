@@ -1,16 +1,19 @@
-"""Where the reference data are, and random diagrams."""
+"""The knots of the tables in all notations, where other reference data are, and random diagrams."""
 
 from __future__ import annotations
 
 import json
 import os
 import random
+from functools import lru_cache
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from torsade.topology import Diagram, moves
+from torsade.topology.table import contents
 
 SHARED = Path(os.environ.get("TORSADE_SHARED", Path(__file__).resolve().parents[3] / "shared"))
 KNOTS = SHARED / "data" / "knots"
@@ -23,10 +26,29 @@ def table(name: str) -> Any:
     return json.loads(path.read_text()) if path.is_file() else {}
 
 
-def braid_word(entry: dict[str, Any]) -> list[int]:
-    """The braid of a closed knot; one entry of the table gives two."""
-    word = entry["braid"]
-    return word if isinstance(word[0], int) else word[0]
+@lru_cache
+def closed_knots() -> dict[str, dict[str, Any]]:
+    """The 249 knots through ten crossings, with all their codes as KnotInfo (knotinfo.org) has them.
+
+    PD codes are in the package's table, the others in its catalogue; Gauss codes, further braids and
+    signatures in `notations.json`.
+    """
+    catalogue = json.loads(files("torsade.knots").joinpath("catalogue/closed.json").read_text("utf-8"))
+    notations = json.loads(Path(__file__).with_name("notations.json").read_text("utf-8"))
+    first_without = {8: 19, 9: 42, 10: 124}  # alternating diagram
+    found = {}
+    for name, row in contents()["knots"].items():
+        crossings, number = map(int, name.split("_"))
+        found[name] = {
+            **notations[name],
+            "pd": row["pd"],
+            "dt": catalogue[name]["dt"],
+            "conway": catalogue[name]["conway"],
+            "braids": [catalogue[name]["braid"], *notations[name].get("other_braids", [])],
+            "crossing_number": crossings,
+            "alternating": number < first_without.get(crossings, 999),
+        }
+    return found
 
 
 def random_move(diagram: Diagram, rng: random.Random) -> tuple[str, Diagram]:

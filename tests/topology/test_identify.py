@@ -26,6 +26,7 @@ from topology.drawing import (
     with_bigon,
     with_kink,
 )
+from topology.drawings import closed_knots
 from torsade.errors import TorsadeError
 from torsade.topology.codes import from_pd
 from torsade.topology.diagram import Diagram
@@ -124,8 +125,8 @@ def test_knots_of_the_table(name: str) -> None:
 
 def test_braids_have_the_names_of_their_codes() -> None:
     """All 249, right mirror image included; certain exactly where the diagram has 10 crossings or fewer."""
-    for name, row in shared("closed.json").items():
-        for word in row["braid"] if isinstance(row["braid"][0], list) else [row["braid"]]:
+    for name, row in closed_knots().items():
+        for word in row["braids"]:
             found = identify_pd(*braid(word))
             assert found.names == (name,)
             assert found.certain == (not found.reason)

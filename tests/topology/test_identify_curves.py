@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from topology.curves import random_directions
-from topology.drawing import shared
+from topology.drawings import closed_knots
 from torsade import curve
 from torsade.arrays import Floats
 from torsade.errors import TorsadeError
@@ -30,11 +30,6 @@ from torsade.topology.table import entries
 ENTRIES = {entry.name: entry for entry in entries()}
 
 
-def words(row: dict) -> list[list[int]]:
-    """The braid words of an entry, some of which have two."""
-    return row["braid"] if isinstance(row["braid"][0], list) else [row["braid"]]
-
-
 def shaken(curves: list[Floats], seed: int) -> list[Floats]:
     """Turned at random, and each node moved by 0.45 of the clearance: no two edges can pass each other."""
     reach = 0.45 * curve.clearance(curves, [True] * len(curves), 0.0).distance
@@ -45,13 +40,13 @@ def shaken(curves: list[Floats], seed: int) -> list[Floats]:
 def test_every_knot_from_every_code() -> None:
     """249 entries from PD, DT and braid, in a minute: one name, one chirality, one set of invariants."""
     began = time.perf_counter()
-    for name, row in shared("closed.json").items():
+    for name, row in closed_knots().items():
         base = ENTRIES[name]
         mirror = ENTRIES.get("m" + name, base)
         for drawn, allowed in [
             (from_pd(row["pd"]), [base]),
             (from_dt(row["dt"]), [base, mirror]),
-            *((from_braid(word), [base]) for word in words(row)),
+            *((from_braid(word), [base]) for word in row["braids"]),
         ]:
             found = identify(drawn)
             entry = next(entry for entry in allowed if (entry.name,) == found.names)
@@ -66,7 +61,7 @@ def test_every_knot_from_every_code() -> None:
 
 def test_5_1_and_the_mirror_image_of_10_132() -> None:
     """They share both polynomials, and the signature tells them apart or colourings do."""
-    rows = shared("closed.json")
+    rows = closed_knots()
     five, ten = from_pd(rows["5_1"]["pd"]), from_pd(rows["10_132"]["pd"])
     one, two = oriented(to_pd(five)), oriented(to_pd(ten.mirror()))
     assert (jones(one), alexander(one)) == (jones(two), alexander(two))
@@ -76,8 +71,8 @@ def test_5_1_and_the_mirror_image_of_10_132() -> None:
 
 
 def test_every_knot_as_a_shaken_polyline_of_200_nodes() -> None:
-    for seed, (name, row) in enumerate(shared("closed.json").items()):
-        for word in words(row):
+    for seed, (name, row) in enumerate(closed_knots().items()):
+        for word in row["braids"]:
             (x,) = braid_curves(word)
             assert len(x) == 200
             assert identify_curves(shaken([x], seed)).names == (name,), name

@@ -24,6 +24,7 @@ from topology.drawing import (
     with_bigon,
     with_kink,
 )
+from topology.drawings import closed_knots
 from torsade.errors import TorsadeError
 from torsade.topology.invariants import Laurent, alexander, determinant, jones, oriented, signature
 
@@ -86,17 +87,14 @@ def test_circles(circles: int) -> None:
 
 def test_signatures_are_the_published_ones() -> None:
     """KnotInfo's, whose sign is the one here."""
-    published = shared("closed.json")
-    assert {name: signature(pd) for name, pd in KNOTS.items()} == {
-        name: int(row["signature"]) for name, row in published.items()
-    }
+    published = {name: row["signature"] for name, row in closed_knots().items()}
+    assert {name: signature(pd) for name, pd in KNOTS.items()} == published
 
 
 def test_braids_and_pd_codes_are_the_same_knots() -> None:
     """Of each of the 249, mirror image included."""
-    for name, row in shared("closed.json").items():
-        found = row["braid"] if isinstance(row["braid"][0], list) else [row["braid"]]
-        for word in found:
+    for name, row in closed_knots().items():
+        for word in row["braids"]:
             assert everything(*braid(word)) == everything(KNOTS[name]), name
 
 

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Sequence
 
 from torsade.cli.messages import say
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, reason_of
 
 __all__ = ["main"]
 
@@ -44,5 +44,16 @@ def _status(arguments: list[str]) -> int:
         return INTERRUPTED
     except BrokenPipeError:
         # Whoever read the output has had enough, as in `torsade run ... | head`.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _silence()
         return 1
+    except OSError as error:
+        if error.filename is not None:
+            raise  # of a file that somebody should have looked after
+        _silence()
+        say(f"cannot write the output ({reason_of(error)}); make room, or write it elsewhere")
+        return BAD_INPUT
+
+
+def _silence() -> None:
+    """Nothing more is written to the standard output, neither what waits to be."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

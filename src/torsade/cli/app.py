@@ -171,8 +171,8 @@ def _topology(
     ] = None,
     drawings: Annotated[
         str,
-        Parameter(help="How many drawings to look at for the range of Gamma; 0 for none [default: 500]."),
-    ] = "500",
+        Parameter(help="How many drawings to look at for the range of Gamma; 0 for none [default: 2000]."),
+    ] = "2000",
     direction: Annotated[
         str | None,
         Parameter(

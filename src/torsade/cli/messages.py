@@ -76,7 +76,7 @@ def _command(arguments: Sequence[str]) -> str | None:
 
 def say(message: str) -> None:
     """Print one sentence on the standard error stream."""
-    sentence = " ".join(message.split()).rstrip(".")
+    sentence = " ".join(message.split()).removesuffix(".")
     print(f"torsade: {sentence}{'' if sentence.endswith('?') else '.'}", file=sys.stderr)
 
 

@@ -4,19 +4,25 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
+
+import numpy as np
 
 from torsade.centerline import Centerline
 from torsade.errors import TorsadeError, quoted
 from torsade.files import SUFFIXES, read_centerline
 from torsade.knots.finding import interpret
-from torsade.topology.diagram import Diagram
+from torsade.topology.codes import BEGINNINGS, code_kind, leaves_mirror_open
+from torsade.topology.diagram import Diagram, strand_name
 from torsade.topology.projection import Projection, clearest, project
 
 __all__ = ["Subject", "subject"]
+
+SAME, NEAR = 1e-6, 1.5
+"""Ends of a strand nearer than so many edges are meant to be one node, or may be."""
 
 
 @dataclass(frozen=True)
@@ -31,6 +37,8 @@ class Subject:
         pulled: the ends that its name pulls; None if it has no name that says so.
         pulls: what it is called when pulled by each two ends.
         centerline, projection: of a file.
+        handed: False where a code leaves open the mirror image of each summand.
+        notes: what the user may not have meant, a sentence each.
     """
 
     given: str
@@ -41,6 +49,8 @@ class Subject:
     pulls: Mapping[str, str] = field(default_factory=dict)
     centerline: Centerline | None = None
     projection: Projection | None = None
+    handed: bool = True
+    notes: tuple[str, ...] = ()
 
 
 def subject(given: str, length_unit: str = "m", direction: str | None = None) -> Subject:
@@ -66,22 +76,63 @@ def subject(given: str, length_unit: str = "m", direction: str | None = None) ->
         raise TorsadeError(
             f"--direction is {direction!r}, but {quoted(text)} is a drawing already; give it with a file"
         )
+    if code_kind(text) is None and re.search(r"[\[\]{}|;:*]", text):
+        raise TorsadeError(
+            f"{quoted(text)} is no name, and no code that is read here; codes begin with {BEGINNINGS}"
+        )
     entry = interpret(text)
     pulled = None if entry.kind == "strand" else entry.pulled  # a knot in one strand is pulled at both ends
-    return Subject(given, entry.kind, entry.title, entry.diagram, pulled, entry.pulls)
+    return Subject(
+        given,
+        entry.kind,
+        entry.title,
+        entry.diagram,
+        pulled,
+        entry.pulls,
+        handed=not leaves_mirror_open(text),
+    )
 
 
 def _is_other_file(text: str) -> bool:
-    """Whether a text is the name of a file of another kind, to be told so."""
-    return re.fullmatch(r"[^\s]{1,200}\.\w{1,9}", text) is not None and Path(text).is_file()
+    """Whether a text names a file of another kind, to be told so; a code may be longer than a name."""
+    try:
+        return re.fullmatch(r"\S+\.\w{1,9}", text) is not None and Path(text).is_file()
+    except OSError:
+        return False
 
 
 def _file(path: str, unit: str, direction: str | None) -> Subject:
     along = None if direction in (None, "fewest") else _vector(str(direction))
     centerline = read_centerline(path, unit)
+    notes = tuple(_gaps(path, centerline))
     look = clearest if direction == "fewest" else partial(project, direction=along)
     seen = look(centerline.strands, centerline.closed)
-    return Subject(path, "centerline", "centerline", seen.diagram, centerline=centerline, projection=seen)
+    what = "centerline"
+    return Subject(path, what, what, seen.diagram, centerline=centerline, projection=seen, notes=notes)
+
+
+def _gaps(path: str, centerline: Centerline) -> Iterator[str]:
+    """What to say of open strands whose ends lie next to each other.
+
+    Raises:
+        TorsadeError: the ends of a strand are one point but for round-off.
+    """
+    for k, (x, shut) in enumerate(zip(centerline.strands, centerline.closed, strict=True)):
+        size = float(np.abs(x).max())
+        if shut or len(x) < 3 or not 0 < size < math.inf:
+            continue
+        longest = float(np.linalg.norm(np.diff(x / size, axis=0), axis=1).max())
+        gap = float(np.linalg.norm((x[-1] - x[0]) / size))
+        if 0 < gap < SAME * longest:
+            raise TorsadeError(
+                f"the last node of strand {k} in {path!r} is the first one but for {gap * size:.1g} m; "
+                "repeat the first exactly if the strand is closed, or leave the last out if it is open"
+            )
+        if 0 < gap <= NEAR * longest:
+            yield (
+                f"the ends of strand {strand_name(k)} are one edge apart; if it is closed, repeat its first "
+                "node at the end"
+            )
 
 
 def _vector(text: str) -> tuple[float, ...]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json as json_format
 import re
+from collections.abc import Sequence
 from itertools import islice
 from typing import Any
 
@@ -53,7 +54,7 @@ def topology(
 
 def _drawings(text: str) -> int:
     if not re.fullmatch(r"\d{1,6}", text.strip(), re.A):
-        raise TorsadeError(f"--drawings is {text!r}; give a whole number from 0 to 999999, such as 500")
+        raise TorsadeError(f"--drawings is {text!r}; give a whole number from 0 to 999999, such as 2000")
     return int(text)
 
 
@@ -69,21 +70,28 @@ def report(given: Subject, pulled: str | None, drawings: int) -> dict[str, Any]:
     ends = _pulled(given, pulled)
     drawn = diagram if ends is None else diagram.pulled(ends)
     simpler = simplify(drawn)
+    counts = state(drawn)
     found: dict[str, Any] = {
         "input": given.given,
         "kind": given.kind,
         "title": given.title,
+        "notes": list(given.notes),
         "strands": diagram.n_strands,
         "ends": list(diagram.ends),
         "pulled": ends,
-        **_counted(state(drawn)),
+        **_counted(counts),
         "charges": list(drawn.signs),
         "linking": drawn.linking.tolist() if drawn.n_strands > 1 else None,
-        "faces": _faces(state(drawn)),
+        "faces": _faces(counts),
+        "outside": _outside(diagram),
         "fewest": _counted(state(simpler)),
         "codes": codes_of(simplify(diagram)),
     }
-    found |= _of_tangle(given, drawn, simpler, drawings) if diagram.ends else _of_closed(simpler)
+    found |= (
+        _of_tangle(given, drawn, simpler, drawings)
+        if diagram.ends
+        else _of_closed(simpler, None if given.handed else drawn)
+    )
     return found | _of_curves(given)
 
 
@@ -95,9 +103,19 @@ def _pulled(given: Subject, pulled: str | None) -> str | None:
         return None
     if pulled is None:
         return given.pulled or "".join(next(pull_choices(given.diagram)))
-    names = re.findall(r"[A-Z]+\d+", pulled.strip().upper())
-    given.diagram.pulled(names if "".join(names) == pulled.strip().upper() else [pulled])
-    return "".join(sorted(names))
+    text = pulled.strip().upper()
+    names = sorted(re.findall(r"[A-Z]+\d+", text))
+    tips = sorted(given.diagram.ends)
+    pairs = list(zip(tips[::2], tips[1::2], strict=True))
+    if sum(map(len, names)) != len(text) or not _is_choice(names, pairs):
+        choices = " and ".join(" or ".join(two) for two in pairs)
+        raise TorsadeError(f"--pulled is {pulled!r}; give one of each open strand, {choices}")
+    return "".join(names)
+
+
+def _is_choice(names: Sequence[str], pairs: Sequence[tuple[str, str]]) -> bool:
+    """Whether these are one of each pair, in order."""
+    return len(names) == len(pairs) and all(name in two for name, two in zip(names, pairs, strict=True))
 
 
 def _counted(counts: State) -> dict[str, Any]:
@@ -112,6 +130,14 @@ def _counted(counts: State) -> dict[str, Any]:
 
 def _faces(counts: State) -> list[dict[str, Any]]:
     return [{"edges": f.edges, "circulation": f.circulation, "bounded": f.bounded} for f in counts.faces]
+
+
+def _outside(diagram: Diagram) -> str | None:
+    """Whether what was given says which face of a closed drawing lies outside: the longest is taken else."""
+    if diagram.ends or not diagram.n_crossings:
+        return None
+    given = {diagram.piece_at[p] for p in diagram.outer}
+    return "given" if len(given) == len(diagram.pieces) else "longest face"
 
 
 def _of_tangle(given: Subject, drawn: Diagram, simpler: Diagram, drawings: int) -> dict[str, Any]:
@@ -158,10 +184,15 @@ def _pull_name(given: Subject, pulled: str) -> str | None:
     return given.pulls.get(pulled)
 
 
-def _of_closed(simpler: Diagram) -> dict[str, Any]:
-    """What is said of knots and links; the diagram has been simplified."""
+def _of_closed(simpler: Diagram, unhanded: Diagram | None = None) -> dict[str, Any]:
+    """What is said of knots and links.
+
+    Args:
+        simpler: the diagram, simplified.
+        unhanded: as it was given, if its code leaves mirror images open.
+    """
     code = oriented(to_pd(simpler.without_circles()), simpler.circles)
-    one = identify(simpler, patience=0)
+    one = identify(unhanded, handed=False) if unhanded else identify(simpler, patience=0)
     try:
         v = _polynomial(jones(code))
     except TorsadeError:  # too wide; the reason is in the identity

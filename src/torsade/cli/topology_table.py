@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import Any
 
@@ -38,6 +39,8 @@ def _what(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield "name" if not found["ends"] else "closed", _name(found)
         if found["reason"]:
             yield "", found["reason"]
+    for note in found["notes"]:
+        yield "note", note
     open_strands = len(found["ends"]) // 2
     closed = found["strands"] - open_strands
     parts = [
@@ -54,12 +57,14 @@ def _counts(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     n, wr = found["crossings"], found["writhe"]
     right = found["charges"].count(1)
     hands = f", {right} right-handed and {n - right} left-handed" if n else ""
-    yield "crossings N", f"{n}{hands}"
+    led = found["projection"]["led_out"] if found["projection"] else 0
+    yield "crossings N", f"{n}{hands}" + (f"; {led} made by leading out ends" if led else "")
     yield "writhe Wr", _signed(wr)
     if found["linking"]:
         yield "linking, half-sum", _matrix(found["linking"])
     yield "twist fluctuation tau", f"{found['tau']:.4g}"
-    yield "circulation Gamma", f"{found['circulation']:.4g}"
+    outside = ", the longest face taken to lie outside" if found["outside"] == "longest face" else ""
+    yield "circulation Gamma", f"{found['circulation']:.4g}{outside}"
     spread = found["circulation_range"]
     if spread:
         yield "", _spread(spread)
@@ -135,7 +140,9 @@ def _space(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield "linking in space", _matrix(found["linking_3d"])
     for k, fractions in enumerate(found["closed_at_infinity"]):
         if fractions:
-            shares = ", ".join(f"{name} {100 * share:.0f} %" for name, share in list(fractions.items())[:4])
+            shares = ", ".join(
+                f"{_shown(name)} {100 * share:.0f} %" for name, share in list(fractions.items())[:4]
+            )
             yield f"strand {strand_name(k)}, at infinity", shares
 
 
@@ -143,8 +150,13 @@ def _name(one: dict[str, Any]) -> str:
     """The names, and whether they are proven."""
     if not one["names"]:
         return "not in the table"
-    names = " or ".join("unknot" if name == "0_1" else name for name in one["names"])
+    names = " or ".join(map(_shown, one["names"]))
     return names if one["certain"] else f"{names} (not certain)"
+
+
+def _shown(name: str) -> str:
+    """A name as people read it: the unknot is called so."""
+    return re.sub(r"(?<!\d)0_1(?!\d)", "unknot", name)
 
 
 def _matrix(rows: list[list[float]]) -> str:

@@ -11,13 +11,16 @@ Names are those of the table (`table`): "3_1" is the right-handed trefoil, "m3_1
 the factors of a sum, "⊔" split pieces. Orientations are left out: a knot and its reverse have one name, and
 so have links that differ in orientation only. A sum of links is named without saying which of their
 components are joined.
+
+DT codes, and Gauss codes without signs, leave open the mirror image of each summand that the drawing shows,
+and the diagram made of one does not say so. With `handed=False`, `identify` takes that into account.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -26,15 +29,17 @@ from scipy.spatial.transform import Rotation
 
 from torsade.curve import perpendicular
 from torsade.errors import TorsadeError
+from torsade.topology import tangle
 from torsade.topology.codes import from_gauss, to_pd
 from torsade.topology.diagram import Diagram
 from torsade.topology.factor import summands
 from torsade.topology.invariants import Code, oriented
-from torsade.topology.links import match_link
+from torsade.topology.links import match_link, prime_links
 from torsade.topology.lookup import Match, match_knot
-from torsade.topology.names import prime_factors, split_union, sum_name
+from torsade.topology.names import mirror_name, prime_factors, split_union, sum_name
 from torsade.topology.projection import project, spiral
 from torsade.topology.simplify import simplify
+from torsade.topology.table import entries
 
 __all__ = [
     "Identity",
@@ -45,6 +50,10 @@ __all__ = [
     "identify_pd",
     "identify_strands",
 ]
+
+
+MOST_NAMES = 64
+"""Of mirror images that a code leaves open, as many are listed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,12 +80,20 @@ class Identity:
         return " or ".join(self.names) or "unknown"
 
 
-def identify(diagram: Diagram, patience: int = 100) -> Identity:
+def identify(diagram: Diagram, patience: int = 100, handed: bool = True) -> Identity:
     """Which knot or link a closed diagram is; it is simplified first, since fewer crossings leave less open.
+
+    >>> from torsade.topology.codes import from_dt, to_dt
+    >>> from torsade.topology.named import named_diagram
+    >>> print(identify(from_dt(to_dt(named_diagram("3_1#m3_1"))), handed=False))
+    3_1#3_1 or 3_1#m3_1
 
     Args:
         diagram: of a knot or a link.
         patience: how long to look for fewer crossings, as in `simplify`, where the name is not certain.
+        handed: False where a code does not say which mirror image each of the drawn summands is. One
+            keeps the name of its drawing; of several, all are named that differ from each other by more
+            than a mirror image of the whole.
 
     Raises:
         TorsadeError: the diagram has open strands.
@@ -86,12 +103,61 @@ def identify(diagram: Diagram, patience: int = 100) -> Identity:
             f"the diagram has ends {' '.join(diagram.ends)}; only closed curves are knots: close it first, "
             "or use `identify_open` on a curve"
         )
+    if not handed:
+        return _unhanded(diagram, patience)
     simpler = simplify(diagram, patience=0)
     found = identify_pd(to_pd(simpler.without_circles()), simpler.circles)
     if found.certain and not found.reason:
         return found
     fewest = simplify(simpler, patience)
     return identify_pd(to_pd(fewest.without_circles()), fewest.circles)
+
+
+def _unhanded(diagram: Diagram, patience: int) -> Identity:
+    """What a diagram can be whose summands may each be exchanged for its mirror image."""
+    found = identify(diagram, patience)
+    as_drawn = [
+        [set(identify(part, patience).names) for part in tangle.summands(piece)]
+        for piece in tangle.split(diagram)
+    ]
+    ways = [[names | set(map(_mirrored, names)) for names in piece] for piece in as_drawn]
+    left_open = [
+        (i, k) for i, piece in enumerate(ways) for k, names in enumerate(piece) if names != as_drawn[i][k]
+    ]
+    if not left_open:
+        return found
+    if len(left_open) == 1:
+        reason = (
+            "the code leaves the mirror image open; named is the one whose first crossing is right-handed"
+        )
+        return replace(found, reason="; ".join(filter(None, (found.reason, reason))))
+    i, k = left_open[0]
+    ways[i][k] = as_drawn[i][k]
+    names = _choices(split_union, [_choices(sum_name, piece) for piece in ways])
+    reason = "the code leaves the mirror image of each summand open; one is named as it is drawn"
+    if len(names) > MOST_NAMES:
+        names, reason = set(found.names), f"{reason}, and of the others one choice out of many"
+    return replace(found, names=tuple(sorted(names)), certain=False, reason=reason, factors=())
+
+
+def _mirrored(name: str) -> str:
+    """The name of the mirror image, which is the same where it is that of the table."""
+    known = {knot.name for knot in entries()} | {link.name for link in prime_links() if "L" in name}
+    pieces = []
+    for piece in name.split(" ⊔ "):
+        factors = [(factor, mirror_name(factor)) for factor in piece.split("#")]
+        pieces.append(sum_name(mirror if mirror in known else factor for factor, mirror in factors))
+    return split_union(pieces)
+
+
+def _choices(combine: Callable[[list[str]], str], ways: Sequence[set[str]]) -> set[str]:
+    """The names of what is put together of one of each; not all, if there are more than `MOST_NAMES`."""
+    total, *others = ways
+    for more in others:
+        total = {combine([*one.split(" ⊔ "), other]) for one in total for other in more}
+        if len(total) > MOST_NAMES:
+            break
+    return total
 
 
 def identify_curves(curves: Sequence[ArrayLike]) -> Identity:

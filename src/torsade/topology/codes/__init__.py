@@ -16,9 +16,10 @@ from torsade.topology.codes.conway_out import to_conway
 from torsade.topology.codes.dowker import from_dt, to_dt
 from torsade.topology.codes.gauss import from_gauss, to_gauss, to_unsigned_gauss
 from torsade.topology.codes.pd import from_pd, to_open_pd, to_pd
-from torsade.topology.codes.text import code_kind, from_text
+from torsade.topology.codes.text import BEGINNINGS, code_kind, from_text, leaves_mirror_open
 
 __all__ = [
+    "BEGINNINGS",
     "code_kind",
     "from_braid",
     "from_conway",
@@ -26,6 +27,7 @@ __all__ = [
     "from_gauss",
     "from_pd",
     "from_text",
+    "leaves_mirror_open",
     "to_braid",
     "to_conway",
     "to_dt",

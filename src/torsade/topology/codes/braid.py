@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted
+from torsade.topology.codes._limits import limited
 from torsade.topology.diagram import CIRCLE, Diagram
 from torsade.topology.moves import add_bigon
 
@@ -23,7 +24,8 @@ def from_braid(word: Iterable[int], n_strands: int | None = None) -> Diagram:
         n_strands: number of strands of the braid; by default as many as the word needs.
 
     Raises:
-        TorsadeError: a word that is empty, or has entries that are no generators of so many strands.
+        TorsadeError: a word that is empty, or has entries that are no generators of so many strands; more
+            than 500 strands.
 
     >>> from_braid([1, -2, 1, -2])
     <Diagram: 4 crossings, 1 strand>
@@ -33,12 +35,13 @@ def from_braid(word: Iterable[int], n_strands: int | None = None) -> Diagram:
         raise TorsadeError("the braid word is empty; give nonzero integers, or the number of strands")
     if not all(isinstance(i, int) and i for i in letters):
         raise TorsadeError(
-            f"the braid word {letters} has an entry that is no generator; give nonzero integers"
+            f"the braid word {quoted(letters)} has an entry that is no generator; give nonzero integers"
         )
     width = max((abs(i) + 1 for i in letters), default=1) if n_strands is None else n_strands
+    limited(width, "strands", "braid word")
     if width < 1 or any(abs(i) >= width for i in letters):
         raise TorsadeError(
-            f"a braid of {width} strands has generators 1 to {width - 1}, and the word is {letters}; "
+            f"a braid of {width} strands has generators 1 to {width - 1}, and the word is {quoted(letters)}; "
             "give more strands"
         )
     mate = [0] * (4 * len(letters))

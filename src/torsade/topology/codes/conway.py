@@ -1,7 +1,8 @@
 """Conway notation: knots and links from tangles put together.
 
-- `3 1 2`, `312`: the rational tangle; its numerator is the knot, here and below. Numbers of two digits
-  need the spaces.
+- `3 1 2`, `312`: the rational tangle; its numerator is the knot, here and below. Each digit is a number,
+  unless a space behind a number, before another or before the semicolon, shows that numbers are set apart:
+  `12 3` and `12 ;3;2` begin with twelve, `123` and `12;3;2` with one.
 - `21;3;2` (or with commas): each summand turned by a final 0, then added; `2+` and `2++` at the end add 1
   and 2 to the sum, `2-` adds -1.
 - `(3;2)(21;2)`: a product of tangles; a minus before one changes all its crossings.
@@ -20,12 +21,16 @@ from collections.abc import Sequence
 from types import MappingProxyType
 from typing import NamedTuple
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted
+from torsade.topology.codes._limits import limited
 from torsade.topology.codes.braid import from_braid
 from torsade.topology.diagram import Diagram
 from torsade.topology.tangle import integer, numerator, rational, rotated
 
-__all__ = ["conway_tangle", "from_conway"]
+__all__ = ["from_conway", "numbers_are_apart"]
+
+DEEPEST = 50
+"""How many parentheses may lie within each other."""
 
 
 class _Polyhedron(NamedTuple):
@@ -59,23 +64,62 @@ def from_conway(code: str) -> Diagram:
 
     >>> from_conway("[22]").n_crossings, from_conway("3;3;2-").n_crossings, from_conway(".2.20").n_crossings
     (4, 8, 8)
+
+    Raises:
+        TorsadeError: what is not Conway notation, or a polyhedron that is not known; more than 500
+            crossings; numbers of which is not clear whether they have two digits.
     """
-    text = re.sub(r"\s*([+\-;,.:*()\[\]])\s*", r"\1", code.strip())
-    text = text.removeprefix("[").removesuffix("]").replace(",", ";")
+    text = code.strip().removeprefix("[").removesuffix("]").replace(",", ";").strip()
     if not text:
         raise TorsadeError("the Conway code is empty; give tangles such as '2 1 2' or '3;21;2'")
-    if re.search(r"[*.:]", text):
-        return _polyhedron(text, code)
-    return numerator(conway_tangle(text, code))
+    _check_numbers(text, code)
+    plain = _plain(text)
+    if re.search(r"[*.:]", plain):
+        return _polyhedron(plain, code)
+    return numerator(_tangle(plain, code))
 
 
-def conway_tangle(text: str, code: str | None = None) -> Diagram:
-    """The tangle of an algebraic Conway code, as far as it is in use through ten crossings.
+def numbers_are_apart(text: str) -> bool:
+    """Whether a code has a space between two numbers, or behind one, so that they may have two digits.
 
-    >>> conway_tangle("21;2").n_crossings
-    5
+    >>> numbers_are_apart("12 ;3;2"), numbers_are_apart("12; 3; 2"), numbers_are_apart("3;3;2+ ")
+    (True, False, False)
     """
-    parser = _Parser(text, text if code is None else code)
+    return re.search(r"\d\s+[\d;,]", text) is not None
+
+
+def _check_numbers(text: str, code: str) -> None:
+    """Refuse a code that is too large, or where 12 could be one number or two."""
+    apart = numbers_are_apart(text)
+    long = re.search(r"\d\d+(?![\d*])", text)
+    if long and not apart and re.search(r"[;)]\s+[\d(]", text):
+        raise TorsadeError(
+            f"the Conway code {quoted(code)} has {quoted(long[0])}, which may be one number or several; "
+            "leave out the spaces or write as in '2 1;3;2' for several, as in '21 ;3 ;2' for one"
+        )
+    numbers = re.findall(r"\d+" if apart else r"\d", text)
+    signs = text.count("+") + text.count("-")
+    limited(len(numbers), "numbers", "Conway code")
+    limited(sum(int(number[:9]) for number in numbers) + signs, "crossings", "Conway code")
+    depth = 0
+    for sign in text:
+        depth += (sign == "(") - (sign == ")")
+        if depth > DEEPEST:
+            raise TorsadeError(
+                f"the Conway code has more than {DEEPEST} parentheses within each other; give fewer"
+            )
+
+
+def _plain(text: str) -> str:
+    """The code with spaces only between numbers, and numbers of several digits only where one is."""
+    if not numbers_are_apart(text):
+        text = re.sub(r"(?<=\d)(?=\d)(?!\d*\*)", " ", text)
+    return re.sub(r"\s*([+\-;.:*()])\s*", r"\1", text)
+
+
+def _tangle(text: str, code: str) -> Diagram:
+    """The tangle of an algebraic code, as far as such are in use through ten crossings."""
+    parser = _Parser(text, code)
     tangle = parser.sum()
     parser.expect_end()
     return tangle
@@ -85,8 +129,7 @@ class _Parser:
     """Reads `sum = product (; product)* signs`, `product = (-? factor)+`, `factor = number | ( sum )`."""
 
     def __init__(self, text: str, code: str) -> None:
-        spaced = " " in text
-        self.words: list[str] = re.findall(r"\d+|\S" if spaced else r"\S", text)
+        self.words: list[str] = re.findall(r"\d+|\S", text)
         self.code = code
         self.place = 0
 
@@ -111,7 +154,7 @@ class _Parser:
             extra += 1 if self.take() == "+" else -1
         if len(terms) == 1 and not extra:
             return terms[0]
-        if extra < 0 and all(word.isdigit() for word in last) and last[-1] != "0":
+        if extra < 0 and all(word.isdecimal() for word in last) and last[-1] != "0":
             terms[-1] = _less_one([int(word) for word in last])
             extra += 1
         total = terms[0] * integer(0)
@@ -121,37 +164,42 @@ class _Parser:
 
     def product(self) -> Diagram:
         total = self.factor()
-        while self.word.isdigit() or self.word == "(" or (self.word == "-" and self.after_minus()):
+        while self.word.isdecimal() or self.word == "(" or (self.word == "-" and self.after_minus()):
             total = total * self.factor()
         return total
 
     def after_minus(self) -> bool:
         """Whether a minus has a factor behind it, and is not the -1 at the end of a sum."""
         following = self.words[self.place + 1 : self.place + 2]
-        return bool(following) and (following[0].isdigit() or following[0] == "(")
+        return bool(following) and (following[0].isdecimal() or following[0] == "(")
 
     def factor(self) -> Diagram:
-        if self.word == "-":
+        sign = 1
+        while self.word == "-":
             self.take()
-            return -self.factor()
-        if self.word.isdigit():
+            sign = -sign
+        tangle = self.unsigned()
+        return tangle if sign > 0 else -tangle
+
+    def unsigned(self) -> Diagram:
+        if self.word.isdecimal():
             return integer(int(self.take()))
         if self.word != "(":
             raise TorsadeError(
-                f"the Conway code {self.code!r} has {repr(self.word) if self.word else 'its end'} where a "
-                "tangle is due; give numbers, sums such as '3;2' and products such as '(3;2)21'"
+                f"the Conway code {quoted(self.code)} has {repr(self.word) if self.word else 'its end'} "
+                "where a tangle is due; give numbers, sums such as '3;2' and products such as '(3;2)21'"
             )
         self.take()
         inside = self.sum()
         if self.word != ")":
-            raise TorsadeError(f"the Conway code {self.code!r} has a '(' that is not closed; close it")
+            raise TorsadeError(f"the Conway code {quoted(self.code)} has a '(' that is not closed; close it")
         self.take()
         return inside
 
     def expect_end(self) -> None:
         if self.word:
             raise TorsadeError(
-                f"the Conway code {self.code!r} has {self.word!r} where it should end; "
+                f"the Conway code {quoted(self.code)} has {self.word!r} where it should end; "
                 "give tangles such as '2 1 2', '3;21;2-' or '(3;2)(21;2)'"
             )
 
@@ -175,15 +223,15 @@ def _polyhedron(text: str, code: str) -> Diagram:
     name = found[1] or ("6**" if text.startswith((".", ":")) else "6*") if found else ""
     if not found or name not in POLYHEDRA:
         raise TorsadeError(
-            f"the basic polyhedron of the Conway code {code!r} is not known; "
+            f"the basic polyhedron of the Conway code {quoted(code)} is not known; "
             f"use one of {', '.join(POLYHEDRA)}"
         )
     word, order, turned = POLYHEDRA[name]
     parts = found[2].replace(":", "..").split(".") if found[2] else []
     if len(parts) > len(order):
         raise TorsadeError(
-            f"the Conway code {code!r} has {len(parts)} tangles, and only {len(order)} vertices of {name} "
-            "are numbered here; give a PD or DT code instead"
+            f"the Conway code {quoted(code)} has {len(parts)} tangles, and only {len(order)} vertices of "
+            f"{name} are numbered here; give a PD or DT code instead"
         )
     tangles = [integer(1)] * len(word)
     for v, part in zip(order, parts, strict=False):
@@ -194,9 +242,9 @@ def _polyhedron(text: str, code: str) -> Diagram:
 
 def _vertex(part: str, code: str) -> Diagram:
     """The tangle of a vertex; a minus before it changes all of it."""
-    if part.startswith("-"):
-        return -_vertex(part[1:], code)
-    return conway_tangle(part, code) if part else integer(1)
+    plain = part.lstrip("-")
+    tangle = _tangle(plain, code) if plain else integer(1)
+    return -tangle if (len(part) - len(plain)) % 2 else tangle
 
 
 def _substituted(base: Diagram, tangles: Sequence[Diagram]) -> Diagram:

@@ -19,7 +19,7 @@ from torsade.topology.codes._algebra import (
     text,
 )
 from torsade.topology.codes.braid import from_braid
-from torsade.topology.codes.conway import POLYHEDRA
+from torsade.topology.codes.conway import POLYHEDRA, numbers_are_apart
 from torsade.topology.diagram import Diagram
 from torsade.topology.moves import slide_triangle, triangles
 from torsade.topology.planar import PlanarMap
@@ -81,8 +81,8 @@ def _code(diagram: Diagram) -> str | None:
 
 
 def _readable(code: str) -> str:
-    """With a space, since numbers of two digits are only read where there is one."""
-    if " " in code:
+    """With a space between numbers, since numbers of two digits are only read where there is one."""
+    if numbers_are_apart(code):
         return code
     return re.sub(r"(\d\d+)", r"\1 0 0", code, count=1)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import product
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted
 from torsade.topology.codes._realize import realized, rows_of
 from torsade.topology.diagram import Diagram
 
@@ -42,7 +42,7 @@ def from_dt(code: Sequence[int] | Sequence[Sequence[int]]) -> Diagram:
         )
     if sorted(map(abs, entries)) != list(range(2, 2 * n + 1, 2)):
         raise TorsadeError(
-            f"the DT code {entries} does not have each of 2, 4 ... {2 * n} once, up to signs; "
+            f"the DT code {quoted(entries)} does not have each of 2, 4 ... {2 * n} once, up to signs; "
             "check its entries"
         )
     passages = [(0, False)] * (2 * n)

@@ -7,9 +7,10 @@ Unsigned, as integers: over passages are negative. It fixes each prime summand u
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Iterable, Sequence
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted
 from torsade.topology.codes._planar import drawn
 from torsade.topology.codes._realize import realized, rows_of
 from torsade.topology.diagram import CIRCLE, Diagram, strand_name
@@ -103,11 +104,11 @@ def _parsed(code: str) -> tuple[list[list[Passage]], dict[int, int]]:
     signs: dict[int, int] = {}
     for part in code.split("|"):
         strands.append([])
-        for word in part.replace(",", " ").split():
-            found = re.fullmatch(r"([OU])(\d+)([+-])", word)
+        for word in re.sub(r"(?<=[+-])(?=[OU])|,", " ", part).split():
+            found = re.fullmatch(r"([OU])(\d{1,9})([+-])", word, re.A)
             if not found:
                 raise TorsadeError(
-                    f"{word!r} in the Gauss code is not understood; give passages such as 'O1+' or 'U12-'"
+                    f"{quoted(word)} in the Gauss code is not understood; give passages such as 'O1+', 'U12-'"
                 )
             c, sign = int(found[2]), 1 if found[3] == "+" else -1
             if signs.setdefault(c, sign) != sign:
@@ -122,8 +123,9 @@ def _renumbered(strands: list[list[Passage]]) -> list[list[Passage]]:
     """The same with crossings from 0 on, each passed once above and once below."""
     passages = [passage for strand in strands for passage in strand]
     number = {c: k for k, c in enumerate(sorted({c for c, _ in passages}))}
+    times = Counter(passages)
     for c in number:
-        above, below = passages.count((c, True)), passages.count((c, False))
+        above, below = times[c, True], times[c, False]
         if (above, below) != (1, 1):
             raise TorsadeError(
                 f"crossing {c} of the Gauss code is passed {above} times above and {below} times below; "
