@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from topology.invariants import determinant, signature
 from torsade.errors import TorsadeError
 from torsade.knots.stacked import bend
-from torsade.topology import Diagram, canonical_form, is_isomorphic, project, simplify
+from torsade.topology import Diagram, canonical_form, is_isomorphic, project, simplify, state
 from torsade.topology.codes import from_braid, from_gauss
 from torsade.topology.tangle import closures
 
@@ -347,6 +347,22 @@ def test_a_curve_keeps_its_diagram_when_it_is_turned_with_the_eye() -> None:
     q *= np.sign(np.linalg.det(q))
     turned = project([x @ q.T], True, q @ np.array([0.1, 0.2, math.sqrt(0.95)])).diagram
     assert canonical_form(turned) == canonical_form(project([x], True, (0.1, 0.2, math.sqrt(0.95))).diagram)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_is_counted_does_not_turn_with_the_drawing(seed: int) -> None:
+    """About the line of sight, as long as the ends are led out alike."""
+    rng = np.random.default_rng(seed)
+    for _ in range(20):
+        walks = [np.cumsum(rng.normal(size=(rng.integers(4, 12), 3)), axis=0) for _ in range(3)]
+        counted: dict[Any, set[tuple[float, int]]] = {}
+        for angle in np.linspace(0, 6, 5):
+            c, s = math.cos(angle), math.sin(angle)
+            seen = project([x @ [[c, s, 0], [-s, c, 0], [0, 0, 1]] for x in walks])
+            found = state(seen.diagram)
+            drawn = seen.n_led_out, seen.diagram.ends
+            counted.setdefault(drawn, set()).add((round(found.gamma, 9), found.whitney))
+        assert all(len(values) == 1 for values in counted.values())
 
 
 def test_strands_keep_their_order() -> None:

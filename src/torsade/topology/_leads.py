@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -120,6 +121,8 @@ def _turned(block: list[int], angles: list[float]) -> list[int]:
 
 
 def _ordered(draft: Draft, order: list[int]) -> Diagram:
-    """The diagram with its ends in this order."""
-    draft.outer = [p for p in draft.outer if p >= 0]  # a piece with ends has its outer faces around them
-    return draft.freeze(order)
+    """The diagram with its ends in this order, its outer darts those of closed pieces."""
+    diagram = draft.freeze(order)
+    return replace(
+        diagram, outer=tuple(p for p in diagram.outer if diagram.pieces[diagram.piece_at[p]][0] >= 0)
+    )

@@ -221,10 +221,8 @@ class Diagram(PlanarMap):
         outer = {f for f, face in enumerate(self.faces) if any(p < 0 for p in face)}
         named = {self.piece_at[p]: self.face_at[p] for p in reversed(self.outer)}
         for k, piece in enumerate(self.pieces):
-            if k in named:
-                outer.add(named[k])
-            elif all(p >= 0 for p in piece):
-                faces = {self.face_at[p] for p in piece}
+            if piece[0] >= 0:  # a piece with ends has its outer faces around them
+                faces = {named[k]} if k in named else {self.face_at[p] for p in piece}
                 outer.add(max(faces, key=lambda f: (len(self.faces[f]), -f)))
         return frozenset(outer)
 
