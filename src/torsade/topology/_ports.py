@@ -58,18 +58,20 @@ def oriented(
 
 def connected(mate: Sequence[int], m: int) -> list[list[int]]:
     """The ports of each connected piece, sorted; all that touches an end is one piece, and comes first."""
-    seen: set[int] = set()
+    seen = bytearray(len(mate))
     pieces = []
     for first in range(-m, len(mate) - m):
-        if first in seen:
+        if seen[first]:
             continue
-        piece = {first} if first >= 0 else set(range(-m, 0))
-        todo = list(piece)
-        while todo:
-            p = todo.pop()
-            near = [mate[p]] if p < 0 else [mate[p], p & ~3 | p + 1 & 3]
-            todo += [q for q in near if q not in piece]
-            piece.update(near)
-        seen |= piece
+        piece = list(range(-m, 0) if first < 0 else range(first, first + 4))
+        for p in piece:
+            seen[p] = 1
+        for p in piece:  # grows as it is read
+            q = mate[p]
+            if not seen[q]:
+                whole = range(q & ~3, (q & ~3) + 4)
+                for near in whole:
+                    seen[near] = 1
+                piece += whole
         pieces.append(sorted(piece))
     return pieces

@@ -104,7 +104,9 @@ def remove_kink(diagram: Diagram, dart: int) -> Diagram:
 
 def add_bigon(diagram: Diagram, dart: int, other: int, over: bool = True) -> Diagram:
     """Second move: push the edge of a dart through their common face, over or under that of another."""
-    if (dart, other) not in fingers(diagram):
+    at = diagram.edge_at, diagram.face_at
+    known = dart in diagram.ports and other in diagram.ports
+    if not known or at[0][dart] == at[0][other] or at[1][dart] != at[1][other]:
         raise TorsadeError(
             f"darts {dart} and {other} are not of two edges around one face; "
             "give one of the pairs of `fingers`"
