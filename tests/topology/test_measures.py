@@ -441,16 +441,16 @@ def test_curves_that_are_none_are_refused() -> None:
     assert refused(nan).startswith("node 3 of curve 0 is [")
     assert "give finite coordinates" in refused([ring(), nan])
     assert "curve 1" in refused([ring(), nan])
-    assert "n of at least 3" in refused([[0, 0, 0], [1, 0, 0]])
-    assert "n of at least 2" in refused([[0, 0, 0]], False)
+    assert "curve 0 has 2 nodes; give at least 3" in refused([[0, 0, 0], [1, 0, 0]])
+    assert "curve 0 has 1 nodes; give at least 2" in refused([[0, 0, 0]], False)
     assert "give (n, 3)" in refused(np.zeros((4, 2)))
     assert "there is no curve" in refused([])
     assert "there is no curve" in refused(3.0)
     assert "not an array of numbers" in refused([[[0, 0, 0], [1, 0]]])
-    assert "2 values of closed are given for 1 curves" in refused([ring()], [True, False])
+    assert "1 curves have 2 closed flags" in refused([ring()], [True, False])
     again = np.concatenate([ring(), ring()[:1]])
     assert refused(again) == (
-        "edge 40 of curve 0 has no length; remove the repeated node at its end; "
+        "nodes 40 and 0 of curve 0 are the same point; remove one; "
         "a closed curve joins its last node to the first by itself"
     )
     with pytest.raises(TorsadeError, match="0 threads cannot work"):

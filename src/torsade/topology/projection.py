@@ -94,8 +94,9 @@ def project(
             refused.append(str(reason))
             continue
         diagram, n_led_out = _drawn(lines, view)
+        height = np.ldexp(view.height, lines.exponent)
         return Projection(
-            diagram, d, tuple(refused), view.strand, view.edge, view.parameter, view.height, n_led_out
+            diagram, d, tuple(refused), view.strand, view.edge, view.parameter, height, n_led_out
         )
     raise TorsadeError(
         f"{_TRIES} directions show no clear drawing, the last because {refused[-1]}; nodes may repeat or "
