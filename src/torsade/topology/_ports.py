@@ -1,10 +1,10 @@
-"""Walks through bare ports, before there is a diagram: directions of strands, connected pieces."""
+"""Walks through bare ports, before there is a diagram: directions of strands, faces, connected pieces."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
-__all__ = ["CIRCLE", "connected", "oriented"]
+__all__ = ["CIRCLE", "around", "connected", "faces", "oriented"]
 
 CIRCLE = 1 << 30
 """Stands in the starts of a diagram for a strand that is a circle without crossings."""
@@ -54,6 +54,41 @@ def oriented(
         if not known(s):
             run(s if s < 0 else s ^ 2)
     return begun, last, entry
+
+
+def around(ends: Sequence[int]) -> dict[int, int]:
+    """Where a walk with the outside on its left comes in again, by the end where it goes out: as for `faces`.
+
+    Args:
+        ends: counterclockwise around the drawing.
+    """
+    return dict(zip(ends, [*ends[1:], *ends[:1]], strict=True))
+
+
+def faces(mate: Sequence[int], beyond: Mapping[int, int]) -> tuple[list[list[int]], list[int]]:
+    """The darts around each face, counterclockwise, and the face on the left of each dart.
+
+    Ports that face themselves, where a crossing is gone, are left out; their face is -1.
+
+    Args:
+        mate: the port that each port faces; the last are those of ends.
+        beyond: by which end a walk around a face goes on after it came to an end; by the same end if the face
+            goes around its tip.
+    """
+    at = [-1] * len(mate)
+    found: list[list[int]] = []
+    m = len(beyond)
+    for first in range(-m, len(mate) - m):
+        if at[first] >= 0 or mate[first] == first:
+            continue
+        face, p, f = [], first, len(found)
+        while at[p] < 0:
+            at[p] = f
+            face.append(p)
+            q = mate[p]
+            p = q & ~3 | q - 1 & 3 if q >= 0 else beyond[q]
+        found.append(face)
+    return found, at
 
 
 def connected(mate: Sequence[int], m: int) -> list[list[int]]:
