@@ -67,6 +67,7 @@ class State:
         charges: sign of every crossing, right-handed +1.
         faces: all faces, unbounded ones among them.
         whitney: sum of the senses of the loops left when every crossing is smoothed, counterclockwise +1.
+            A ring that crosses nothing counts as +1 whichever way it ran: diagrams do not keep that.
         loops: how many such loops there are.
     """
 
@@ -123,6 +124,9 @@ def state(knot: Diagram | Centerline, pulled: str | Iterable[str] | None = None)
         knot: a diagram of a knot, link or tangle; or a centerline, which is looked at along z.
         pulled: names of the pulled ends, as in `Diagram.pulled`. A bend that says which ends are pulled, as
             those of `torsade.knots.bend` do, need not be told.
+
+    Raises:
+        TorsadeError: pulled ends that are not one of each open strand, or what `project` refuses.
     """
     if isinstance(knot, Centerline):
         pulled = getattr(knot, "pulled", None) if pulled is None else pulled
@@ -160,7 +164,8 @@ def whitney_index(diagram: Diagram) -> int:
     """Sum of the senses of the loops left when every crossing is smoothed, counterclockwise +1.
 
     For a closed drawing in the plane this is the degree of its tangent map (Whitney 1937); arcs that lead
-    from end to end are left out. Circles without crossings count as counterclockwise.
+    from end to end are left out. Circles without crossings count as counterclockwise: a diagram does not keep
+    which way they run, `torsade.topology.views.turning_number` of the curve says it.
     """
     return sum(turning(diagram, loop) for loop in diagram.seifert_circles)
 

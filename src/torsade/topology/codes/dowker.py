@@ -61,6 +61,9 @@ def to_dt(diagram: Diagram) -> list[int] | list[list[int]]:
     Strands of a link start one edge later where that is needed for odd labels to meet even ones. All
     signs are changed if the first entry would be negative.
 
+    Raises:
+        TorsadeError: the diagram has ends, or a circle without crossings beside other strands.
+
     >>> to_dt(from_dt([4, 8, 10, 2, 12, 6]))
     [4, 8, 10, 2, 12, 6]
     """

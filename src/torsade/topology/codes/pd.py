@@ -24,6 +24,9 @@ def to_pd(diagram: Diagram, first: int = 1) -> list[tuple[int, int, int, int]]:
 
     A circle without crossings has no label, so it is given a kink; a single circle is [].
 
+    Raises:
+        TorsadeError: the diagram has ends.
+
     >>> to_pd(from_pd([(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]))
     [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]
     """

@@ -40,10 +40,12 @@ class Code:
 
     @property
     def n_components(self) -> int:
+        """Number of components, circles among them."""
         return len(self.components) + self.circles
 
     @property
     def writhe(self) -> int:
+        """Sum of all signs."""
         return sum(self.signs)
 
     @cached_property
