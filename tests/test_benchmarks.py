@@ -34,7 +34,7 @@ def numbers(found: Any) -> list[float]:
     return [float(found)] if isinstance(found, int | float) else []
 
 
-SCRIPTS = ("step", "kernels", "mobility", "start", "bends", "convergence", "writhe", "topology")
+SCRIPTS = ("step", "kernels", "mobility", "start", "bends", "convergence", "writhe", "topology", "tight")
 
 
 @pytest.mark.parametrize("name", SCRIPTS)

@@ -322,6 +322,13 @@ def test_smoothing_keeps_ends_and_straight_lines(seed: int, n: int, scale: float
     np.testing.assert_allclose(curve.smooth(line, scale), line, atol=1e-6)
 
 
+def test_smoothing_along_a_length_that_is_known() -> None:
+    """Edge lengths of its own give the same; twice as long edges bend over half the scale."""
+    x, l = circle(60), curve.edge_lengths(circle(60), closed=True)
+    np.testing.assert_array_equal(curve.smooth(x, 0.3, True, l), curve.smooth(x, 0.3, True))
+    np.testing.assert_allclose(curve.smooth(x, 0.3, True, 2 * l), curve.smooth(x, 0.15, True), atol=1e-12)
+
+
 def test_smoothing_removes_noise_and_leaves_the_shape() -> None:
     noise = 1e-2 * np.random.default_rng(2).normal(size=(400, 3))
     left = np.abs(curve.smooth(circle(400) + noise, 0.1, closed=True) - circle(400)).std()
@@ -338,6 +345,7 @@ def test_smoothing_removes_noise_and_leaves_the_shape() -> None:
         (lambda: curve.edge_vectors([[0, 0], [1, 1]]), r"shape \(2, 2\)"),
         (lambda: curve.length([[0, 0, 0], [1, 1, 1]], closed=True), "closed curve .* at least 3"),
         (lambda: curve.tangents([[0, 0, 0], [1, 0, 0], [1, 0, 0]]), "edge 1 has no length"),
+        (lambda: curve.smooth(circle(9), 0.1, True, [1.0] * 8), r"9 edges have lengths of shape \(8,\)"),
         (lambda: curve.resample(circle(9)), "n or their spacing"),
         (lambda: curve.resample(circle(9), n=3, spacing=1.0), "n or their spacing"),
         (lambda: curve.resample(circle(9), n=1), "cannot have 0 edges"),

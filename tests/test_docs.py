@@ -50,7 +50,7 @@ def test_the_python_example_runs(
 
 def test_commands_are_found() -> None:
     """The tests below have something to test."""
-    assert {line.split()[1] for line in commands()} == {"run", "topology"}
+    assert {line.split()[1] for line in commands()} == {"run", "topology", "convert", "tight"}
     assert len(commands()) >= 5
 
 
@@ -58,6 +58,26 @@ def test_commands_are_found() -> None:
 def test_a_topology_shown_is_read(line: str) -> None:
     done = subprocess.run(
         [sys.executable, "-m", *shlex.split(line)], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("line", [line for line in commands() if line.split()[1] == "convert"])
+def test_a_conversion_shown_is_done(line: str, tmp_path: Path) -> None:
+    _, _, given, out, *options = shlex.split(line)
+    (x,) = ts.knots.strand("overhand", "0.2 mm").strands
+    ts.write_centerline(ts.Centerline((1e3 * x if "mm" in options else x,)), tmp_path / given)
+    done = subprocess.run(
+        [sys.executable, "-m", *shlex.split(line)], capture_output=True, text=True, check=False, cwd=tmp_path
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / out).stat().st_size > 1000
+
+
+@pytest.mark.parametrize("line", [line for line in commands() if line.split()[1] == "tight"])
+def test_a_knot_shown_becomes_tight(line: str, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", *shlex.split(line)], capture_output=True, text=True, check=False, cwd=tmp_path
     )
     assert (done.returncode, done.stderr) == (0, "")
 
@@ -77,7 +97,17 @@ def test_a_command_shown_is_a_valid_specification(line: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "words", [(), ("demo",), ("topology",), ("run", "prison-escape"), ("run", "tighten")]
+    "words",
+    [
+        (),
+        ("demo",),
+        ("topology",),
+        ("convert",),
+        ("tight",),
+        ("knots",),
+        ("run", "prison-escape"),
+        ("run", "tighten"),
+    ],
 )
 def test_help_comes(words: tuple[str, ...]) -> None:
     done = subprocess.run(

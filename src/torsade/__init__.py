@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from torsade import curve, knots, protocols, topology, view
-    from torsade.centerline import Centerline, read_csv, write_csv
+    from torsade.centerline import Centerline
     from torsade.errors import TorsadeError
+    from torsade.files import read_centerline, read_csv, write_centerline, write_csv
     from torsade.material import MATERIALS, Material, Section, named_material
     from torsade.results import Result
     from torsade.results import open_result as open
@@ -34,9 +35,11 @@ __all__ = [
     "named_material",
     "open",
     "protocols",
+    "read_centerline",
     "read_csv",
     "topology",
     "view",
+    "write_centerline",
     "write_csv",
 ]
 
@@ -51,8 +54,10 @@ _HOMES = {
     "Section": "torsade.material",
     "TorsadeError": "torsade.errors",
     "named_material": "torsade.material",
-    "read_csv": "torsade.centerline",
-    "write_csv": "torsade.centerline",
+    "read_centerline": "torsade.files",
+    "read_csv": "torsade.files",
+    "write_centerline": "torsade.files",
+    "write_csv": "torsade.files",
 }
 
 

@@ -28,7 +28,16 @@ register: Any = event.register
 njit: Any = numba.njit
 
 PACKAGE = Path(__file__).parent
-KERNEL_SOURCES = ("_compile.py", "assembly.py", "topology", "rod", "motion")
+KERNEL_SOURCES = (
+    "_compile.py",
+    "assembly.py",
+    "topology",
+    "rod",
+    "motion",
+    "knots/band.py",
+    "knots/spread.py",
+    "knots/tight_kernels.py",
+)
 
 
 def source_hash() -> str:

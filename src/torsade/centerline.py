@@ -1,28 +1,19 @@
-"""The shape of fibers at the start: `Centerline`, its CSV file, and the check before a run."""
+"""The shape of fibers at the start: `Centerline`, and the check before a run."""
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from torsade import curve
-from torsade.errors import TorsadeError, quoted, reason_of
-from torsade.units import quantity
+from torsade.errors import TorsadeError
 
-__all__ = ["Centerline", "check", "read_csv", "write_csv"]
+__all__ = ["Centerline", "check"]
 
 FloatArray = NDArray[np.float64]
-
-HEADER = "strand,x,y,z"
-SEPARATORS = ",;\t"
-LARGEST_FILE = 64 * 2**20
-"""Largest file read [bytes]: about a million nodes, ten times what a run can use."""
 
 SHORTEST = 5.0
 """Shortest fiber, in diameters 2h: shorter ones are not slender, and no rod theory holds."""
@@ -73,140 +64,6 @@ class Centerline:
             raise TorsadeError(f"{len(strands)} strands have {len(closed)} closed flags; give one for each")
         object.__setattr__(self, "strands", strands)
         object.__setattr__(self, "closed", closed)
-
-
-def write_csv(centerline: Centerline, path: str | Path) -> None:
-    """Write columns strand, x, y, z [m], to the last bit; a closed strand ends with its first node.
-
-    Raises:
-        TorsadeError: the file cannot be written.
-    """
-    lines = ["# centerline nodes [m]; a strand that ends with its first node is closed", HEADER]
-    for k, (x, closed) in enumerate(zip(centerline.strands, centerline.closed, strict=True)):
-        nodes = np.concatenate([x, x[:1]]) if closed else x
-        lines += [f"{k},{a!r},{b!r},{c!r}" for a, b, c in nodes.tolist()]
-    try:
-        Path(path).write_text("\n".join(lines) + "\n", encoding="utf-8")
-    except OSError as error:
-        raise TorsadeError(f"cannot write {str(path)!r} ({reason_of(error)}); choose another place") from None
-
-
-def read_csv(path: str | Path, unit: str = "m") -> Centerline:
-    """Read nodes from a CSV file with columns strand, x, y, z, in metres or another unit of length.
-
-    Columns are separated by commas, semicolons or tabs, as in the header.
-    Lines that begin with # are comments. Strands are numbered 0, 1, 2 ... in the order of the file.
-    A strand whose last node equals its first is closed.
-
-    Raises:
-        TorsadeError: the file is missing, not a text file of this form, or too large; with the line.
-    """
-    metre = quantity(f"1 {unit}", "length")
-    text = _read_text(Path(path))
-    separator = ""
-    strands: list[list[list[float]]] = []
-    for number, line in enumerate(io.StringIO(text, newline=None), start=1):
-        if not line.strip() or line.lstrip().startswith("#"):
-            continue
-        where = f"{str(path)!r}, line {number}"
-        if not separator:
-            separator = _separator(line, where)
-            continue
-        strand, node = _read_row(line, separator, where)
-        if strand == len(strands):
-            strands.append([])
-        elif strand != len(strands) - 1:
-            raise TorsadeError(_misplaced(strand, len(strands), where))
-        strands[-1].append(node)
-    if not strands:
-        missing = "no nodes" if separator else f"no header {HEADER!r}"
-        raise TorsadeError(f"{str(path)!r} has {missing}; give a line {HEADER!r} and then one line per node")
-    for k, nodes in enumerate(strands):
-        if len(nodes) < 2:
-            raise TorsadeError(f"strand {k} in {str(path)!r} has only one node; give at least 2")
-    # Three distinct nodes make a loop; fewer that return are an error left to `check`.
-    closed = tuple(len(nodes) > 3 and nodes[0] == nodes[-1] for nodes in strands)
-    return Centerline(
-        tuple(metre * np.array(nodes[:-1] if c else nodes) for nodes, c in zip(strands, closed, strict=True)),
-        closed,
-    )
-
-
-def _read_text(path: Path) -> str:
-    """The text of a regular file of bearable size."""
-    name = repr(str(path))
-    try:
-        if path.is_dir():
-            raise TorsadeError(f"{name} is a directory; give a CSV file with columns {HEADER!r}")
-        if not path.is_file():
-            raise TorsadeError(f"there is no file {name}; give the path of a CSV file of nodes")
-        size = path.stat().st_size
-        if size > LARGEST_FILE:
-            raise TorsadeError(
-                f"{name} has {size / 2**20:.0f} MB, more than the {LARGEST_FILE / 2**20:.0f} MB "
-                "a centerline may have; resample it to fewer nodes"
-            )
-        content = path.read_bytes()
-    except (OSError, ValueError) as error:
-        if isinstance(error, TorsadeError):
-            raise
-        raise TorsadeError(f"cannot read {name} ({reason_of(error)}); give a readable CSV file") from None
-    try:
-        text = content.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = "\0"
-    if "\0" in text:
-        raise TorsadeError(f"{name} is not a text file; give a CSV file with columns {HEADER!r}, in UTF-8")
-    return text
-
-
-def _cells(line: str, separator: str, where: str) -> list[str]:
-    rows = csv.reader([line.strip(" \r\n")], delimiter=separator, strict=True, skipinitialspace=True)
-    try:
-        return [cell.strip() for cell in next(rows)]
-    except csv.Error:
-        raise TorsadeError(f"{where} cannot be read as CSV; give numbers separated by commas") from None
-
-
-def _separator(line: str, where: str) -> str:
-    """What separates the columns of a header."""
-    for separator in SEPARATORS:
-        if ",".join(_cells(line, separator, where)).lower() == HEADER:
-            return separator
-    raise TorsadeError(
-        f"{where} is {quoted(line.strip(), 40)}, not the header; begin with the line {HEADER!r}, with "
-        "commas, semicolons or tabs"
-    )
-
-
-def _read_row(line: str, separator: str, where: str) -> tuple[int, list[float]]:
-    cells = _cells(line, separator, where)
-    if len(cells) != 4:
-        raise TorsadeError(f"{where} has {len(cells)} columns; give the four of {HEADER!r}")
-    if not (cells[0].isascii() and cells[0].isdigit() and len(cells[0]) <= 9):
-        raise TorsadeError(f"{where} has strand {quoted(cells[0], 40)}; give an integer of at least 0")
-    node = []
-    for axis, cell in zip("xyz", cells[1:], strict=True):
-        try:
-            value = math.nan if "_" in cell else float(cell)
-        except ValueError:
-            raise TorsadeError(
-                f"{where} has {axis} = {quoted(cell, 40)}; give a number such as 1.5e-3"
-            ) from None
-        if not math.isfinite(value):
-            raise TorsadeError(f"{where} has {axis} = {quoted(cell, 40)}; give a finite number")
-        node.append(value)
-    return int(cells[0]), node
-
-
-def _misplaced(strand: int, count: int, where: str) -> str:
-    if strand < count:
-        return (
-            f"{where} returns to strand {strand} after strand {count - 1}; put the nodes of a strand together"
-        )
-    return (
-        f"{where} begins strand {strand} where strand {count} is due; number the strands 0, 1, 2 ... in order"
-    )
 
 
 def check(centerline: Centerline, radius: float) -> None:
@@ -263,7 +120,7 @@ def _check_edges(k: int, x: FloatArray, closed: bool, diameter: float) -> None:
         i = int(np.argmax(phi)) + (0 if closed else 1)
         raise TorsadeError(
             f"strand {k} turns by {np.rad2deg(phi.max()):.0f} degrees at node {i}, {_position(x[i])}; "
-            f"smooth or resample it to at most {math.degrees(SHARPEST_TURN):.0f} degrees"
+            f"smooth or resample it (--smooth) to at most {math.degrees(SHARPEST_TURN):.0f} degrees"
         )
 
 

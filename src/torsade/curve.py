@@ -240,7 +240,7 @@ def _edge_count(n: int | None, spacing: float | None, closed: bool, total: float
     return int(edges)
 
 
-def smooth(x: ArrayLike, scale: float, closed: bool = False) -> FloatArray:
+def smooth(x: ArrayLike, scale: float, closed: bool = False, lengths: ArrayLike | None = None) -> FloatArray:
     """Smooth away what is shorter than `scale`; shape (n, 3), ends kept to the last bit.
 
     Minimises the sum of |y - x|^2 + scale^4 |y''|^2 over arclength: a wave of wave number k is
@@ -251,9 +251,11 @@ def smooth(x: ArrayLike, scale: float, closed: bool = False) -> FloatArray:
         x: nodes [m], shape (n, 3).
         scale: smoothing length [m]; 0 changes nothing.
         closed: whether the last node joins the first.
+        lengths: of the edges [m], shape (n - 1,) open or (n,) closed, where arclength is known better than
+            along x: noise makes edges longer than the curve is.
 
     Raises:
-        TorsadeError: `scale` negative or not finite, or an edge without length.
+        TorsadeError: `scale` negative or not finite, an edge without length, or a wrong number of lengths.
     """
     from scipy.sparse import csc_array, diags_array
     from scipy.sparse.linalg import spsolve
@@ -264,7 +266,10 @@ def smooth(x: ArrayLike, scale: float, closed: bool = False) -> FloatArray:
     n = len(x)
     if scale == 0 or n < 3:
         return x.copy()
-    l = _positive_lengths(edge_lengths(x, closed))
+    l = edge_lengths(x, closed)
+    if lengths is not None and np.shape(lengths) != l.shape:
+        raise TorsadeError(f"{len(l)} edges have lengths of shape {np.shape(lengths)}; give one for each")
+    l = _positive_lengths(l if lengths is None else np.asarray(lengths, dtype=np.float64))
     hinge = np.arange(n) if closed else np.arange(1, n - 1)
     before, after = l[hinge - 1], l[hinge % len(l)]
     lbar = (before + after) / 2

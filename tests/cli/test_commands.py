@@ -198,9 +198,9 @@ def test_a_very_early_ctrl_c_is_clean(tmp_path: Path) -> None:
 
 
 def test_a_centerline_in_millimetres_and_semicolons(tmp_path: Path) -> None:
-    from torsade.knots import overhand
+    from torsade.knots import strand
 
-    (x,) = overhand("0.2 mm").strands
+    (x,) = strand("overhand", "0.2 mm").strands
     rows = [f"0;{1e3 * a!r};{1e3 * b!r};{1e3 * c!r}" for a, b, c in x.tolist()]
     (tmp_path / "mine.csv").write_text("strand;x;y;z\n" + "\n".join(rows))
     short = ("--duration", "2 ms", "--frames", "1")

@@ -57,7 +57,7 @@ def test_a_bend_as_a_table() -> None:
     assert (done.returncode, done.stderr) == (0, "")
     lines = [" ".join(line.split()) for line in done.stdout.splitlines()]
     for line in (
-        "bend Reef (square) knot",
+        "bend Thief knot: reef (square) knot pulled by A1B0",
         "pulled A1B0: thief",
         "crossings N 6, 3 right-handed and 3 left-handed",
         "twist fluctuation tau 1",
@@ -189,7 +189,7 @@ def test_a_polyline_that_meets_itself(tmp_path: Path, nodes: list[Any], says: st
         ("m3_1#3_1", ["3_1#m3_1"]),
         ("unknot", ["0_1"]),
         ("trefoil", ["3_1"]),
-        ("figure-eight knot", ["4_1"]),
+        ("cinquefoil", ["5_1"]),
         ("Whitehead link", ["L5a1"]),
         ("borromean rings", ["L6a4"]),
         ("mL4a1", ["mL4a1"]),

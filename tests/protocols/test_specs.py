@@ -90,6 +90,8 @@ def test_a_specification_is_frozen_and_survives_json() -> None:
         ({"knot": "reef", "pulled": "A1A0"}, "not one end of each strand"),
         ({"knot": "reef", "direction": "w"}, "choose one of x, -x, y, -y, z, -z, line"),
         ({"knot": "reef", "centerline": "a.csv"}, "are both given; give one of them"),
+        ({"knot": "reef", "smooth": "0.1 mm"}, "a built-in knot needs no smoothing; leave smooth out"),
+        ({"centerline": "a.csv", "smooth": "-1 mm"}, "smooth is '-1 mm'; give a length of at least 0"),
         ({"knot": "reef", "tolerance": 1e-3, "fixed_step": 1e-4}, "are both given"),
         ({}, "nothing to pull is given"),
         (
@@ -107,9 +109,9 @@ def test_bad_fields_are_refused_in_one_sentence(fields: dict[str, Any], says: st
 
 
 def test_tighten_says_what_it_does_not_have() -> None:
-    with pytest.raises(ts.TorsadeError, match="is called 'trefoil'; did you mean 'overhand'"):
+    with pytest.raises(ts.TorsadeError, match=r"'trefoil' is no knot in one strand, .*; give 'open 3_1'"):
         Tighten(knot="trefoil")
-    with pytest.raises(ts.TorsadeError, match='nothing to pull is given; give a knot, "overhand", or'):
+    with pytest.raises(ts.TorsadeError, match='nothing to pull is given; give a knot such as "overhand", or'):
         Tighten()
     with pytest.raises(ts.TorsadeError, match="length_unit 'mm' belongs to a centerline"):
         Tighten(knot="overhand", length_unit="mm")
@@ -118,6 +120,32 @@ def test_tighten_says_what_it_does_not_have() -> None:
 
 
 # --- what a specification makes
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".xyz", ".obj", ".vect", ".npz", ".npy"])
+def test_a_centerline_in_any_format(tmp_path: Path, suffix: str) -> None:
+    built = PrisonEscape(knot="reef").configuration()
+    if suffix == ".npy":  # holds strands of one length
+        built = ts.Centerline(tuple(ts.curve.resample(x, n=200) for x in built.strands))
+    ts.write_centerline(built, tmp_path / f"reef{suffix}")
+    read = PrisonEscape(centerline=str(tmp_path / f"reef{suffix}"), preset="published").configuration()
+    for a, b in zip(built.strands, read.strands, strict=True):
+        np.testing.assert_array_equal(a, b)
+
+
+def test_a_noisy_centerline_is_smoothed_as_asked_or_not_at_all(tmp_path: Path) -> None:
+    path = str(tmp_path / "scan.csv")
+    built = PrisonEscape(knot="reef").configuration()
+    rng = np.random.default_rng(0)
+    ts.write_csv(ts.Centerline(tuple(x + 4e-5 * rng.normal(size=x.shape) for x in built.strands)), path)
+    with pytest.raises(ts.TorsadeError):
+        PrisonEscape(centerline=path).configuration()
+    spec = PrisonEscape(centerline=path, smooth="0.2 mm")
+    smooth = spec.configuration()
+    assert max(np.linalg.norm(np.diff(x, axis=0), axis=1).max() for x in smooth.strands) <= 0.5 * spec.h
+    assert spec.stored()["smooth"] == 2e-4
+    with pytest.raises(ts.TorsadeError, match=r'may pull strands through each other; give smooth = "'):
+        PrisonEscape(centerline=path, smooth="1.6 mm").configuration()
 
 
 def test_strands_are_resampled_unless_published(bends: Path) -> None:

@@ -13,7 +13,7 @@ from topology.drawing import shared
 from torsade import curve
 from torsade.arrays import Floats
 from torsade.errors import TorsadeError
-from torsade.knots import bend_diagram, overhand
+from torsade.knots import bend_diagram, strand
 from torsade.topology import (
     braid_curves,
     identify,
@@ -124,7 +124,7 @@ def test_strands_that_cross_nothing_are_rings() -> None:
 
 
 def test_an_overhand_knot_is_a_trefoil_from_nearly_everywhere() -> None:
-    (x,) = overhand("1 mm").strands
+    (x,) = strand("overhand", "1 mm").strands
     found = identify_open(x)
     assert found.directions == 100
     assert sum(found.fractions.values()) == pytest.approx(1)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from topology.invariants import determinant, signature
 from torsade.errors import TorsadeError
-from torsade.knots.stacked import bend
+from torsade.knots import bend
 from torsade.topology import Diagram, canonical_form, is_isomorphic, project, simplify, state
 from torsade.topology.codes import from_braid, from_gauss
 from torsade.topology.measures import writhe

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, Group, Parameter
 
 from torsade import __version__
+from torsade.cli.knots_app import knots_app
 from torsade.errors import TorsadeError
 
 if TYPE_CHECKING:
@@ -50,6 +51,19 @@ torsade topology "X[1,5,2,4] X[3,1,4,6] X[5,3,6,2]"
 
 torsade topology mine.csv --length-unit mm"""
 
+CONVERT_EXAMPLES = """Examples:
+
+torsade convert scan.xyz knot.csv --length-unit mm --smooth "0.1 mm" --spacing "0.1 mm"
+
+torsade convert knot.csv knot.vtk"""
+TIGHT_EXAMPLES = """Examples:
+
+torsade tight 3_1
+
+torsade tight whitehead --out whitehead.csv --picture whitehead.png
+
+torsade tight 4_1 --ropelength 50 --radius "0.2 mm" --out loose.csv"""
+
 _WHAT = Group("What to do", sort_key=1)
 _OUTPUT = Group("Input and output", sort_key=2)
 
@@ -72,6 +86,9 @@ def build(arguments: list[str]) -> App:
     )
     app.command(_demo, name="demo", help_epilogue="", version_flags=[])
     app.command(_topology, name="topology", help_epilogue=TOPOLOGY_EXAMPLES, version_flags=[])
+    app.command(_convert, name="convert", help_epilogue=CONVERT_EXAMPLES, version_flags=[])
+    app.command(knots_app())
+    app.command(_tight, name="tight", help_epilogue=TIGHT_EXAMPLES, version_flags=[])
     run = App(
         name="run",
         help="Run an experiment: prison-escape (pull a bend) or tighten (pull a knot in one strand).",
@@ -142,7 +159,8 @@ def _topology(
             "crossings (3_1, m3_1#4_1, L5a1, unknot), a suture (5,-3). Or a code: PD as X[1,5,2,4] "
             "X[3,1,4,6] ... or [[1,5,2,4],...], DT: 4 6 2, signed Gauss O1+ U2+ ..., unsigned Gauss: -1 2 "
             "..., a braid in braces {1,-2,1,-2} or after braid:, Conway notation in brackets [3 2] or after "
-            "C. Or a file: CSV with columns strand,x,y,z; a strand that ends with its first node is closed.",
+            "C. Or a file of curves (.csv, .xyz, .obj, .vect, .npz or .npy); a strand that ends with its "
+            "first node is closed.",
         ),
     ],
     /,
@@ -176,6 +194,85 @@ def _topology(
     from torsade.cli.topology import topology
 
     return topology(given, pulled, drawings, direction, length_unit, json)
+
+
+def _convert(
+    given: Annotated[str, Parameter(name="IN", help="File to read: .csv, .xyz, .obj, .vect, .npz or .npy.")],
+    out: Annotated[str, Parameter(name="OUT", help="File to write: one of these, or .vtk.")],
+    /,
+    *,
+    length_unit: Annotated[str, Parameter(help="Unit of x, y, z in IN [default: m]; OUT is in m.")] = "m",
+    smooth: Annotated[
+        str | None,
+        Parameter(
+            allow_leading_hyphen=True,
+            help='Smooth away what is shorter than this length, such as "0.1 mm", as far as the knot stays '
+            "the same.",
+        ),
+    ] = None,
+    spacing: Annotated[
+        str | None,
+        Parameter(
+            allow_leading_hyphen=True,
+            help='Spread nodes evenly, at most so far apart, such as "0.1 mm" [default: as given].',
+        ),
+    ] = None,
+    every: Annotated[
+        str,
+        Parameter(
+            allow_leading_hyphen=True,
+            help="Take every so many nodes only, where noise is larger than the distance of nodes "
+            "[default: 1].",
+        ),
+    ] = "1",
+    json: Annotated[bool, Parameter(help=OPTIONS["json"][1])] = False,
+    overwrite: Annotated[bool, Parameter(help="Replace OUT where it exists.")] = False,
+) -> int:
+    """Read curves, smooth and resample them if asked to, and write them in another format.
+
+    A strand passes through no other on the way: the knot stays what it is.
+    """
+    from torsade.cli.convert import convert
+
+    return convert(given, out, length_unit, smooth, spacing, every, json, overwrite)
+
+
+def _tight(
+    given: Annotated[
+        str,
+        Parameter(
+            name="NAME|CODE|FILE",
+            allow_leading_hyphen=True,
+            help="A knot or link by name (3_1, m5_2, 3_1#4_1, L5a1, borromean) or code, as for torsade "
+            "topology, or a CSV file of closed strands.",
+        ),
+    ],
+    /,
+    *,
+    ropelength: Annotated[
+        str | None, Parameter(help="Stop where L/h has fallen to this number, such as 50.")
+    ] = None,
+    radius: Annotated[
+        str | None,
+        Parameter(help='Radius h of the fiber, such as "0.2 mm"; without it lengths are in radii.'),
+    ] = None,
+    nodes: Annotated[
+        str | None, Parameter(help="Nodes of the result [default: one every fifth of the radius].")
+    ] = None,
+    tries: Annotated[
+        str, Parameter(help="How many other shapes to look at, for a shorter one [default: 14].")
+    ] = "14",
+    out: Annotated[str | None, Parameter(help="Write the nodes to this CSV file.")] = None,
+    picture: Annotated[str | None, Parameter(help="Draw the tight knot to this PNG file.")] = None,
+    json: Annotated[bool, Parameter(help=OPTIONS["json"][1])] = False,
+) -> int:
+    """Pull a knot or link tight: the shortest closed fiber that makes it, its ropelength L/h and its writhe.
+
+    L/h is length over radius; over the diameter it is half as much. It is an upper bound of the ropelength.
+    """
+    from torsade.cli.tight import tight
+
+    return tight(given, ropelength, radius, nodes, tries, out, picture, json)
 
 
 def _protocol_command(spec: type[Spec]) -> Callable[..., int]:

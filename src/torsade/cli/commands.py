@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from torsade.protocols.base import Progress, Spec
     from torsade.results import Result
 
-__all__ = ["demo", "run"]
+__all__ = ["check_drawings", "demo", "progress", "run"]
 
 INSTALL_VIEW = 'pip install "torsade[view]"'
 
@@ -40,7 +40,7 @@ def run(
 ) -> int:
     """Run one specification: the fields of a file, and those given in their place."""
     wanted = _read(protocol, given, spec)
-    _check_drawings(picture, plot)
+    check_drawings(picture, plot)
     result = _run(wanted, out, resume, overwrite, json)
     _print(result, out, json)
     _draw(result, out, picture, plot, json)
@@ -60,7 +60,7 @@ def demo(out: str, json: bool) -> int:
         advice += [
             "Next, compare a knot that slips:",
             "  torsade run prison-escape --knot thief --plot thief.png",
-            "or pull your own, two strands in a CSV file:",
+            "or pull your own, two strands in a file (CSV, XYZ, OBJ, VECT, NPZ):",
             "  torsade run prison-escape --centerline MINE.csv --out mine.zarr",
         ]
         print("\n".join(advice))
@@ -101,7 +101,7 @@ def _read(protocol: type[Spec], given: dict[str, str], path: str | None) -> Spec
     return protocol(**merged(fields, given))
 
 
-def _check_drawings(picture: str | None, plot: str | None) -> None:
+def check_drawings(picture: str | None, plot: str | None) -> None:
     """Refuse pictures that cannot be drawn or written, before anything is computed."""
     for path, module, endings in (
         (picture, "pyvista", (".png",)),
@@ -136,8 +136,8 @@ def _can(module: str) -> bool:
 def _run(spec: Spec, out: str | None, resume: bool, overwrite: bool, quiet: bool) -> Result:
     """Run with a progress bar, and say what is saved when Ctrl-C stops it."""
     try:
-        with _progress(quiet) as progress:
-            return spec.run(progress, out, resume=resume, overwrite=overwrite)
+        with progress(quiet) as shown:
+            return spec.run(shown, out, resume=resume, overwrite=overwrite)
     except KeyboardInterrupt as error:
         if getattr(error, "part", None) is not None:
             raise KeyboardInterrupt(
@@ -149,7 +149,7 @@ def _run(spec: Spec, out: str | None, resume: bool, overwrite: bool, quiet: bool
 
 
 @contextmanager
-def _progress(quiet: bool) -> Iterator[Progress | None]:
+def progress(quiet: bool) -> Iterator[Progress | None]:
     """A progress bar on the terminal; off it, one line when kernels must be compiled."""
     if not sys.stderr.isatty():
         yield None if quiet else _notice

@@ -6,15 +6,72 @@ import difflib
 import re
 import sys
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from cyclopts import CycloptsError
 
 __all__ = ["parse_error", "say"]
 
-TOPOLOGY_OPTIONS = ("--pulled", "--drawings", "--length-unit")
-"""Options of `torsade topology` that take a value."""
+
+class _Command(NamedTuple):
+    """A command that is not made from a specification: its options, and what to say.
+
+    Attributes:
+        valued: options that take a value.
+        switches: those that take none.
+        nothing: what to say where nothing is given.
+        more: what to say of a word too many.
+    """
+
+    valued: tuple[str, ...]
+    switches: tuple[str, ...]
+    nothing: str
+    more: str
+
+
+_QUOTE = "{} comes after what the command is about; quote names and codes that have spaces"
+
+COMMANDS = MappingProxyType(
+    {
+        "topology": _Command(
+            ("--pulled", "--drawings", "--direction", "--length-unit"),
+            ("--json",),
+            "nothing is given; give a name such as reef or 5_1, a code, or a file of curves",
+            _QUOTE,
+        ),
+        "tight": _Command(
+            ("--ropelength", "--radius", "--nodes", "--tries", "--out", "--picture"),
+            ("--json",),
+            "nothing is given; give a closed knot or link such as 3_1 or L5a1, a code, or a file of curves",
+            _QUOTE,
+        ),
+        "convert": _Command(
+            ("--length-unit", "--smooth", "--spacing", "--every"),
+            ("--json", "--overwrite"),
+            "convert takes two files; give one to read and one to write, such as scan.xyz knot.csv",
+            "{} comes after both files; give one to read and one to write",
+        ),
+        "knots list": _Command(("--kind",), ("--json",), "", _QUOTE),
+        "knots show": _Command((), ("--json",), "nothing is given; give a name such as reef or 5_1", _QUOTE),
+        "knots build": _Command(
+            ("--out", "--radius", "--length", "--lead", "--tail", "--spacing", "--pulled", "--picture"),
+            ("--json", "--overwrite"),
+            "nothing is given; give a name such as reef or 5_1, or a code",
+            _QUOTE,
+        ),
+    }
+)
+"""By their words in the shell."""
+
+_FIRST = ("convert", "demo", "knots", "run", "tight", "topology")
+
+
+def _command(arguments: Sequence[str]) -> str | None:
+    """Which of `COMMANDS` is given."""
+    words = (" ".join(arguments[:2]), *arguments[:1])
+    return next((word for word in words if word in COMMANDS), None)
 
 
 def say(message: str) -> None:
@@ -30,13 +87,15 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
     token = getattr(getattr(error, "token", None), "keyword", None)
     if kind == "UnknownOptionError" and token:
         return _unknown_option(str(token), arguments)
-    if arguments[:1] == ["topology"]:
-        return _about_topology(kind, unused, arguments)
+    if name := _command(arguments):
+        return _about(COMMANDS[name], kind, unused, arguments)
     if kind == "UnknownCommandError" or (kind == "UnusedCliTokensError" and arguments[:1] != ["run"]):
         return _unknown_command(unused[0] if unused else arguments[0], arguments)
     if kind == "UnusedCliTokensError":
         if unused[0] in arguments[2:3]:
-            option = "--centerline" if unused[0].endswith(".csv") else "--knot"
+            from torsade.files import SUFFIXES
+
+            option = "--centerline" if unused[0].lower().endswith(SUFFIXES) else "--knot"
             return f"{unused[0]!r} comes without its option; did you mean {option} {unused[0]}?"
         return (
             f"{unused[0]!r} belongs to no option; give every value after its option, and quote values with "
@@ -51,15 +110,15 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
     return text.replace(". ", "; ") + "; see torsade --help"
 
 
-def _about_topology(kind: str, unused: Sequence[str], arguments: Sequence[str]) -> str:
-    """What `torsade topology` cannot read, other than unknown options."""
-    if kind == "MissingArgumentError" and arguments[-1] in TOPOLOGY_OPTIONS:
+def _about(command: _Command, kind: str, unused: Sequence[str], arguments: Sequence[str]) -> str:
+    """What one of `COMMANDS` cannot read, other than unknown options."""
+    if kind == "MissingArgumentError" and arguments[-1] in command.valued:
         return f"{arguments[-1]} has no value; give one after it, such as {arguments[-1]} VALUE"
     if kind == "RepeatArgumentError":
         return "an option is given more than once; give each once"
-    if unused:
-        return f"{unused[0]!r} comes after what the command is about; quote names and codes that have spaces"
-    return "nothing is given; give a name such as reef or 5_1, a code, or a CSV file"
+    if unused and unused[0].startswith("--"):
+        return _unknown_option(unused[0].partition("=")[0], arguments)
+    return command.more.format(repr(unused[0])) if unused else command.nothing
 
 
 def _unknown_option(option: str, arguments: Sequence[str]) -> str:
@@ -71,9 +130,9 @@ def _unknown_option(option: str, arguments: Sequence[str]) -> str:
     if arguments[:1] == ["demo"]:
         known = ["--out", "--json", "--help"]
         command = "torsade demo"
-    elif arguments[:1] == ["topology"]:
-        known = [*TOPOLOGY_OPTIONS, "--json", "--help"]
-        command = "torsade topology"
+    elif name := _command(arguments):
+        known = [*COMMANDS[name].valued, *COMMANDS[name].switches, "--help"]
+        command = f"torsade {name}"
     elif arguments[:1] == ["run"] and len(arguments) > 1 and arguments[1] in PROTOCOLS:
         spec = PROTOCOLS[arguments[1]]
         name = option.lstrip("-").replace("-", "_")
@@ -96,7 +155,10 @@ def _unknown_command(word: str, arguments: Sequence[str]) -> str:
         return f"there is no protocol {word!r}; {hint}choose one of {', '.join(PROTOCOLS)}"
     if word in PROTOCOLS:
         return f"{word!r} is a protocol; give torsade run {word}"
-    near = difflib.get_close_matches(word, ["demo", "run", "topology", "--help", "--version"], n=1)
-    hint = f"did you mean {near[0]!r}?" if near else "choose demo, run or topology, or see torsade --help"
+    if arguments[:1] == ["knots"] and word != "knots":
+        return f"there is no command 'knots {word}'; choose knots list, knots show or knots build"
+    near = difflib.get_close_matches(word, [*_FIRST, "--help", "--version"], n=1)
+    known = f"choose {', '.join(_FIRST[:-1])} or {_FIRST[-1]}, or see torsade --help"
+    hint = f"did you mean {near[0]!r}?" if near else known
     what = "option" if word.startswith("-") else "command"
     return f"there is no {what} {word!r}; {hint}"

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from torsade.centerline import Centerline, read_csv
+from torsade.centerline import Centerline
 from torsade.errors import TorsadeError, quoted
-from torsade.knots.bends import bend_names, find_bend
-from torsade.knots.sutures import suture_diagram
-from torsade.topology.codes import code_kind, from_text
+from torsade.files import SUFFIXES, read_centerline
+from torsade.knots.finding import interpret
 from torsade.topology.diagram import Diagram
-from torsade.topology.named import COMMON_NAMES, looks_like_a_name, named_diagram
 from torsade.topology.projection import Projection, clearest, project
 
 __all__ = ["Subject", "subject"]
@@ -31,6 +29,7 @@ class Subject:
         title: what it is, in words.
         diagram: strands run as the code or the file has them.
         pulled: the ends that its name pulls; None if it has no name that says so.
+        pulls: what it is called when pulled by each two ends.
         centerline, projection: of a file.
     """
 
@@ -39,6 +38,7 @@ class Subject:
     title: str
     diagram: Diagram
     pulled: str | None = None
+    pulls: Mapping[str, str] = field(default_factory=dict)
     centerline: Centerline | None = None
     projection: Projection | None = None
 
@@ -56,34 +56,29 @@ def subject(given: str, length_unit: str = "m", direction: str | None = None) ->
     """
     text = given.strip()
     if not text:
-        raise TorsadeError("nothing is given; give a name such as reef or 5_1, a code, or a CSV file")
+        raise TorsadeError("nothing is given; give a name such as reef or 5_1, a code, or a file of curves")
     if re.match(r"--?[a-z]", text):
         raise TorsadeError(f"topology has no option {quoted(text)}; see torsade topology --help")
-    if text.lower().endswith(".csv") or "/" in text or Path(text).is_file():
+    # A file named reef does not stand in the way of the reef.
+    if text.lower().endswith(SUFFIXES) or "/" in text or _is_other_file(text):
         return _file(given, length_unit, direction)
     if direction is not None:
         raise TorsadeError(
             f"--direction is {direction!r}, but {quoted(text)} is a drawing already; give it with a file"
         )
-    kind = code_kind(text)
-    if kind is not None:
-        return Subject(given, kind, kind, from_text(text))
-    pair = re.fullmatch(r"\(?\s*([+-]?\d{1,6})\s*,\s*([+-]?\d{1,6})\s*\)?", text, re.A)
-    if pair:
-        return Subject(given, "suture", "suture", suture_diagram(int(pair[1]), int(pair[2])), "A1B1")
-    if re.fullmatch(r"[\d\s,;()+-]+", text):
-        raise TorsadeError(
-            f"{quoted(text)} is a list of numbers; say which code it is, such as 'DT: 4 6 2', "
-            "'braid: 1 -2 1 -2' or 'Gauss: -1 2 -3 1 -2 3'"
-        )
-    if looks_like_a_name(text):
-        return Subject(given, "name", "knot or link", named_diagram(text))
-    return _bend(given, text)
+    entry = interpret(text)
+    pulled = None if entry.kind == "strand" else entry.pulled  # a knot in one strand is pulled at both ends
+    return Subject(given, entry.kind, entry.title, entry.diagram, pulled, entry.pulls)
+
+
+def _is_other_file(text: str) -> bool:
+    """Whether a text is the name of a file of another kind, to be told so."""
+    return re.fullmatch(r"[^\s]{1,200}\.\w{1,9}", text) is not None and Path(text).is_file()
 
 
 def _file(path: str, unit: str, direction: str | None) -> Subject:
     along = None if direction in (None, "fewest") else _vector(str(direction))
-    centerline = read_csv(path, unit)
+    centerline = read_centerline(path, unit)
     look = clearest if direction == "fewest" else partial(project, direction=along)
     seen = look(centerline.strands, centerline.closed)
     return Subject(path, "centerline", "centerline", seen.diagram, centerline=centerline, projection=seen)
@@ -104,22 +99,3 @@ def _vector(text: str) -> tuple[float, ...]:
             f"--direction is {quoted(text)}; give an axis such as z, three numbers such as 1,0,0.5, or fewest"
         )
     return vector
-
-
-def _bend(given: str, name: str) -> Subject:
-    """A bend; if there is none of this name, the error also knows the words for knots and links."""
-    try:
-        entry, pulled = find_bend(name)
-    except TorsadeError:
-        raise TorsadeError(_unknown(name)) from None
-    return Subject(given, "bend", entry.title, entry.diagram, pulled)
-
-
-def _unknown(name: str) -> str:
-    words = (*bend_names(), *COMMON_NAMES)
-    near = difflib.get_close_matches(re.sub(r"[\s-]+", "_", name.lower()), words, n=1, cutoff=0.6)
-    hint = f"did you mean {near[0]!r}? " if near else ""
-    return (
-        f"nothing is called {quoted(name)}; {hint}give a bend ({', '.join(bend_names())}), a knot or link "
-        "such as 3_1, m3_1#4_1 or L5a1, a suture such as 5,-3, a code or a CSV file"
-    )

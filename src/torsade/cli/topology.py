@@ -7,23 +7,22 @@ from __future__ import annotations
 
 import json as json_format
 import re
-from collections.abc import Callable, Iterable
 from itertools import islice
 from typing import Any
 
 import numpy as np
 
+from torsade.cli.codes import codes_of
 from torsade.cli.subject import Subject, subject
 from torsade.errors import TorsadeError
-from torsade.knots.bends import find_bend
-from torsade.topology.codes import to_conway, to_dt, to_gauss, to_open_pd, to_pd
+from torsade.topology.codes import to_pd
 from torsade.topology.counting import State, circulation_range, pull_choices, state
 from torsade.topology.diagram import Diagram
 from torsade.topology.identify import Identity, identify, identify_open, identify_strands
 from torsade.topology.invariants import Laurent, alexander, determinant, jones, oriented, signature
 from torsade.topology.measures import average_crossing_number, writhe_matrix
 from torsade.topology.simplify import simplify
-from torsade.topology.tangle import closures
+from torsade.topology.tangle import close, closures
 
 __all__ = ["report", "topology"]
 
@@ -82,34 +81,10 @@ def report(given: Subject, pulled: str | None, drawings: int) -> dict[str, Any]:
         "linking": drawn.linking.tolist() if drawn.n_strands > 1 else None,
         "faces": _faces(state(drawn)),
         "fewest": _counted(state(simpler)),
-        "codes": _codes(simplify(diagram)),
+        "codes": codes_of(simplify(diagram)),
     }
     found |= _of_tangle(given, drawn, simpler, drawings) if diagram.ends else _of_closed(simpler)
     return found | _of_curves(given)
-
-
-def _codes(simpler: Diagram) -> dict[str, str | None]:
-    """Codes of the drawing with fewest crossings, as `from_text` reads them; None where there is none."""
-    if simpler.ends:
-        return {"pd": _pd_text(to_open_pd(simpler)), "gauss": None, "dt": None, "conway": None}
-    writers: dict[str, Callable[[Diagram], str]] = {
-        "pd": lambda d: _pd_text(to_pd(d)),
-        "gauss": to_gauss,
-        "dt": lambda d: f"DT: {to_dt(d)}",
-        "conway": lambda d: f"[{to_conway(d)}]",
-    }
-    return {name: _if_any(write, simpler) for name, write in writers.items()}
-
-
-def _if_any(write: Callable[[Diagram], str], diagram: Diagram) -> str | None:
-    try:
-        return write(diagram)
-    except TorsadeError:
-        return None
-
-
-def _pd_text(rows: Iterable[Iterable[object]]) -> str:
-    return " ".join(f"X[{','.join(map(str, row))}]" for row in rows)
 
 
 def _pulled(given: Subject, pulled: str | None) -> str | None:
@@ -161,8 +136,17 @@ def _of_tangle(given: Subject, drawn: Diagram, simpler: Diagram, drawings: int) 
         ],
         "strand_types": [_identity(one) for one in identify_strands(drawn)],
         "closures": [{"joins": ["-".join(two) for two in joins], **_identity(one)} for joins, one in closed],
-        **dict.fromkeys(("names", "certain", "reason", "alexander", "determinant", "signature", "jones")),
+        **_of_closure(drawn),
     }
+
+
+def _of_closure(drawn: Diagram) -> dict[str, Any]:
+    """Names and invariants of a knot in one strand: those of the closed knot, which is the only one."""
+    keys = ("names", "certain", "reason", "alexander", "determinant", "signature", "jones")
+    if len(drawn.ends) != 2:
+        return dict.fromkeys(keys)
+    closed = _of_closed(simplify(close(drawn, [(drawn.ends[0], drawn.ends[1])])))
+    return {key: closed[key] for key in keys}
 
 
 def _few(drawn: Diagram) -> bool:
@@ -171,7 +155,7 @@ def _few(drawn: Diagram) -> bool:
 
 
 def _pull_name(given: Subject, pulled: str) -> str | None:
-    return find_bend(given.given)[0].pulls.get(pulled) if given.kind == "bend" else None
+    return given.pulls.get(pulled)
 
 
 def _of_closed(simpler: Diagram) -> dict[str, Any]:

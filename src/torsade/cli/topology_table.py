@@ -11,6 +11,10 @@ from torsade.topology.diagram import strand_name
 __all__ = ["rows"]
 
 
+TITLED = ("bend", "strand", "suture", "torus", "variant")
+"""Kinds of things whose title says more than their name."""
+
+
 def rows(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """Names and values of a report."""
     yield from _what(found)
@@ -24,12 +28,14 @@ def rows(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def _what(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    read = "" if found["kind"] in ("bend", "name") else f", read as a {found['kind']}"
+    read = (
+        "" if not found["kind"].endswith(("code", "word", "centerline")) else f", read as a {found['kind']}"
+    )
     yield "given", found["input"] + read
-    if found["kind"] == "bend":
-        yield "bend", found["title"]
-    if not found["ends"]:
-        yield "name", _name(found)
+    if found["kind"] in TITLED:
+        yield found["kind"], found["title"]
+    if found["names"] is not None:
+        yield "name" if not found["ends"] else "closed", _name(found)
         if found["reason"]:
             yield "", found["reason"]
     open_strands = len(found["ends"]) // 2
@@ -85,7 +91,9 @@ def _tangle(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
             )
             yield f"  pulled {pull['pulled']}", f"{numbers}{name}"
     yield from _strands(found["strand_types"])
-    for closure in found["closures"]:
+    if found["alexander"]:
+        yield from _invariants(found)
+    for closure in found["closures"] if len(found["closures"]) > 1 else ():
         lk = f", Lk {_signed(closure['linking'][0][1])}" if _is_pair(closure["linking"]) else ""
         yield f"joined {' '.join(closure['joins'])}", _name(closure) + lk
 
@@ -101,6 +109,10 @@ def _is_pair(linking: list[list[int]] | None) -> bool:
 
 def _closed(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield from _strands(found["strand_types"] or ())
+    yield from _invariants(found)
+
+
+def _invariants(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield "Alexander polynomial", found["alexander"]["text"]
     yield "determinant", str(found["determinant"])
     yield "signature", _signed(found["signature"])

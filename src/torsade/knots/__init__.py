@@ -1,20 +1,37 @@
-"""Knots ready to be pulled, and bends and sutures as diagrams."""
+"""Knots by name: the catalogue, their diagrams, and their fibers: ready to be pulled, tight, or measured."""
 
-from torsade.knots.bends import Bend, bend_diagram, bend_names, find_bend
-from torsade.knots.overhand import STRAND_KNOTS, overhand
-from torsade.knots.stacked import BENDS, PULLS, BuiltBend, bend
+from torsade.knots.bends import PULLS, Bend
+from torsade.knots.build import BuiltKnot, build
+from torsade.knots.entries import KINDS, Entry, facts, variants
+from torsade.knots.finding import bend_diagram, bend_names, find, interpret, search
+from torsade.knots.measured import Cleaned, clean
+from torsade.knots.ropelength import Thickness, thickness
 from torsade.knots.sutures import suture_diagram
+from torsade.knots.tied import bend, strand, tie
+from torsade.knots.tight import TightKnot, tighten
 
 __all__ = [
-    "BENDS",
+    "KINDS",
     "PULLS",
-    "STRAND_KNOTS",
     "Bend",
-    "BuiltBend",
+    "BuiltKnot",
+    "Cleaned",
+    "Entry",
+    "Thickness",
+    "TightKnot",
     "bend",
     "bend_diagram",
     "bend_names",
-    "find_bend",
-    "overhand",
+    "build",
+    "clean",
+    "facts",
+    "find",
+    "interpret",
+    "search",
+    "strand",
     "suture_diagram",
+    "thickness",
+    "tie",
+    "tighten",
+    "variants",
 ]

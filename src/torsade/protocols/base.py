@@ -100,6 +100,12 @@ class Spec(BaseModel, ABC):
     length_unit: str | None = Field(
         None, description="Unit of x, y, z in the centerline's file, such as mm; by default m."
     )
+    smooth: Annotated[Length, Field(ge=0)] | None = Field(
+        None,
+        description="Smooth the centerline over this length first, without changing its knot; by default not "
+        "at all.",
+        examples=["0.1 mm"],
+    )
     material: str = Field(
         "nylon", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
     )
@@ -227,6 +233,8 @@ class Spec(BaseModel, ABC):
             raise TorsadeError(
                 f"length_unit {self.length_unit!r} belongs to a centerline; leave it out, or give one"
             )
+        if self.knot is not None and self.smooth is not None:
+            raise TorsadeError("a built-in knot needs no smoothing; leave smooth out, or give a centerline")
 
     def check_strain(self, force: float) -> None:
         """Refuse a pull [N] under which the fiber is no longer elastic in any sense."""

@@ -27,7 +27,7 @@ PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
 
 _REPLACES = MappingProxyType(
     {
-        "knot": ("centerline", "length_unit"),
+        "knot": ("centerline", "length_unit", "smooth"),
         "centerline": ("knot", "lead"),
         "tolerance": ("fixed_step",),
         "fixed_step": ("tolerance",),

@@ -31,7 +31,7 @@ class PrisonEscape(Spec):
     """Pull a bend by one end while another is clamped, and see how fast it gives way.
 
     Strand 0 of a centerline file is A, strand 1 is B; end 0 of a strand is its first node, end 1 its
-    last. Either `knot`, a built-in bend, or `centerline`, a CSV file, says what is pulled.
+    last. Either `knot`, a built-in bend, or `centerline`, a file, says what is pulled.
     """
 
     hints: ClassVar[Mapping[str, str]] = {
@@ -42,9 +42,12 @@ class PrisonEscape(Spec):
     }
 
     protocol: Literal["prison-escape"] = "prison-escape"
-    knot: str | None = Field(None, description="Built-in bend: reef, thief, granny or grief.")
+    knot: str | None = Field(
+        None,
+        description="Bend (reef, thief, granny, carrick, zeppelin ...), suture (5,-3), or a code.",
+    )
     centerline: str | None = Field(
-        None, description="CSV file of two strands, columns strand,x,y,z, in place of a knot."
+        None, description="File of two strands (.csv, .xyz, .obj, .vect, .npz or .npy), in place of a knot."
     )
     pulled: str | None = Field(
         None,
@@ -67,12 +70,9 @@ class PrisonEscape(Spec):
     def _known_knot(cls, name: str | None) -> str | None:
         if name is None:
             return None
-        from torsade.knots.overhand import STRAND_KNOTS
-        from torsade.knots.stacked import known_name
+        from torsade.knots.finding import known_bend
 
-        if name.strip().lower() in STRAND_KNOTS:
-            raise TorsadeError(f"{name!r} is a knot in one strand; give torsade run tighten --knot {name}")
-        return known_name(name)
+        return known_bend(name).name
 
     @field_validator("pulled")
     @classmethod
@@ -89,7 +89,7 @@ class PrisonEscape(Spec):
 
     @model_validator(mode="after")
     def _knot_or_centerline(self) -> PrisonEscape:
-        self.check_shape('give a knot such as "reef", or a centerline, a CSV file of two strands')
+        self.check_shape('give a knot such as "reef", or a centerline, a file of two strands')
         if self.knot is None and self.lead is not None:
             raise TorsadeError("a centerline has the leads that it has; leave lead out, or give a knot")
         self.check_strain(self.force)
@@ -97,11 +97,11 @@ class PrisonEscape(Spec):
 
     def configuration(self) -> Centerline:
         """Two open strands, checked, at the resolution of the run."""
-        from torsade.protocols.shapes import check_built, read_centerline
+        from torsade.protocols.shapes import check_built, open_strands
 
         if self.knot is None:
-            return read_centerline(str(self.centerline), self, 2, "prison-escape pulls two strands")
-        from torsade.knots.stacked import bend
+            return open_strands(str(self.centerline), self, 2, "prison-escape pulls two strands")
+        from torsade.knots.tied import bend
 
         # The bend does not care which of its two ends is the clamped one.
         pulled = None if self.pulled is None else "".join(sorted((self.pulled[:2], self.pulled[2:])))
@@ -114,9 +114,9 @@ class PrisonEscape(Spec):
             if self.knot is None:
                 text = "A0B0"
             else:
-                from torsade.knots.stacked import bend
+                from torsade.knots.finding import known_bend
 
-                text = bend(self.knot, self.h).pulled
+                text = str(known_bend(self.knot).pulled or "A1B1")
         a, i, b, j = ("AB".index(c) if c in "AB" else int(c) for c in text)
         return (a, i), (b, j)
 

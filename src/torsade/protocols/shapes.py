@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from torsade.centerline import Centerline, check, read_csv
+from torsade.centerline import Centerline, check
 from torsade.curve import length, resample
 from torsade.errors import TorsadeError
+from torsade.files import read_centerline
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
 
-__all__ = ["check_built", "check_count", "check_frames", "read_centerline"]
+__all__ = ["check_built", "check_count", "check_frames", "open_strands"]
 
 LARGEST_COUNT = 100_000
 """Most nodes of a run: a step then takes about a second."""
@@ -20,25 +21,41 @@ LARGEST_RESULT = 4_000_000_000
 """Most that positions and strains of all frames may take in memory [bytes]."""
 
 
-def read_centerline(path: str, spec: Spec, strands: int, wanted: str) -> Centerline:
-    """Open strands from a CSV file, checked as given, then resampled as the specification wants."""
-    shape = read_csv(path, spec.length_unit or "m")
+def open_strands(path: str, spec: Spec, strands: int, wanted: str) -> Centerline:
+    """Open strands from a file, checked as given, then resampled as the specification wants."""
+    shape = read_centerline(path, spec.length_unit or "m")
     if len(shape.strands) != strands:
         other = {1: "tighten takes one", 2: "prison-escape takes two"}.get(len(shape.strands))
         advice = f"; {other}" if other else ""
         has = "1 strand" if len(shape.strands) == 1 else f"{len(shape.strands)} strands"
         raise TorsadeError(f"{path!r} has {has}, and {wanted}{advice or f'; give {strands}'}")
     check_count(sum(len(x) for x in shape.strands))
-    check(shape, spec.h)
     for k, closed in enumerate(shape.closed):
         if closed:
             raise TorsadeError(f"strand {k} in {path!r} is closed and has no ends to pull; cut it open")
+    if spec.smooth:
+        return _smoothed(shape, spec.smooth, spec)
+    check(shape, spec.h)
     if spec.node_spacing is None:
         return shape
     check_count(sum(length(x) for x in shape.strands) / spec.node_spacing)
     resampled = Centerline(tuple(resample(x, spacing=spec.node_spacing) for x in shape.strands))
     check(resampled, spec.h)
     return resampled
+
+
+def _smoothed(shape: Centerline, scale: float, spec: Spec) -> Centerline:
+    """A measured shape without its noise, at the resolution of the run; never less smooth than asked for."""
+    from torsade.knots.measured import clean
+
+    smoother = clean(shape, scale, spec.node_spacing)
+    if smoother.scale < scale:
+        raise TorsadeError(
+            f"smoothing over {1e3 * scale:.4g} mm may pull strands through each other; give smooth = "
+            f'"{1e3 * smoother.scale:.4g} mm", which does not'
+        )
+    check(smoother, spec.h)
+    return smoother
 
 
 def check_count(nodes: float) -> None:

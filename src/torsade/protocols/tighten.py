@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from torsade.errors import TorsadeError
 from torsade.protocols.base import Experiment, Positive, Spec
 from torsade.units import Force
 
@@ -35,10 +34,12 @@ class Tighten(Spec):
     }
 
     protocol: Literal["tighten"] = "tighten"
-    knot: str | None = Field(None, description="Built-in knot in one strand: overhand.")
+    knot: str | None = Field(
+        None, description="Knot in one strand: overhand, figure-eight, overhand-7, open 8_20 and others."
+    )
     centerline: str | None = Field(
         None,
-        description="CSV file of one strand, columns strand,x,y,z with strand 0, in place of a knot.",
+        description="File of one strand (.csv, .xyz, .obj, .vect, .npz or .npy), in place of a knot.",
     )
     material: str = Field(
         "optomechanical", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
@@ -50,30 +51,25 @@ class Tighten(Spec):
     def _known_knot(cls, name: str | None) -> str | None:
         if name is None:
             return None
-        from torsade.knots.overhand import known_strand_knot
-        from torsade.knots.stacked import BENDS
+        from torsade.knots.finding import known_strand
 
-        if name.strip().lower() in BENDS:
-            raise TorsadeError(
-                f"{name!r} is a bend of two strands; give torsade run prison-escape --knot {name}"
-            )
-        return known_strand_knot(name)
+        return known_strand(name).name
 
     @model_validator(mode="after")
     def _bearable(self) -> Tighten:
-        self.check_shape('give a knot, "overhand", or a centerline, a CSV file of one strand')
+        self.check_shape('give a knot such as "overhand", or a centerline, a file of one strand')
         self.check_strain(self.force)
         return self
 
     def configuration(self) -> Centerline:
         """One open strand, checked, at the resolution of the run."""
-        from torsade.protocols.shapes import check_built, read_centerline
+        from torsade.protocols.shapes import check_built, open_strands
 
         if self.knot is None:
-            return read_centerline(str(self.centerline), self, 1, "tighten pulls one strand by both its ends")
-        from torsade.knots.overhand import overhand
+            return open_strands(str(self.centerline), self, 1, "tighten pulls one strand by both its ends")
+        from torsade.knots.tied import strand
 
-        return check_built(overhand(self.h, spacing=self.node_spacing), self.h)
+        return check_built(strand(self.knot, self.h, spacing=self.node_spacing), self.h)
 
     def experiment(self, assembly: Assembly, state: State) -> Experiment:
         """Both ends pulled; their distance, the length, the greatest curvature and strain measured."""

@@ -14,6 +14,7 @@
 | `draft` | the workbench on which diagrams are changed |
 | `invariants`, `identify` | polynomials and numbers; which knot or link it is |
 | `counting` | the thesis's rules for a pulled knot: N, tau, Gamma |
+| `triangle_moves`, `isotopy` | whether curves in space become others without passing through each other |
 | `measures`, `framing`, `views` | linking, writhe, twist and turning numbers of curves |
 """
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from functools import reduce
 from types import MappingProxyType
@@ -22,6 +21,10 @@ COMMON_NAMES = MappingProxyType(
         "trefoil": "3_1",
         "figure-eight": "4_1",
         "hopf": "L2a1",
+        "cinquefoil": "5_1",
+        "three-twist": "5_2",
+        "carrick mat": "8_18",
+        "solomon": "L4a1",
         "whitehead": "L5a1",
         "borromean": "L6a4",
     }
@@ -60,7 +63,7 @@ def _plain(part: str) -> str:
 
 def _factor(part: str, name: str) -> Diagram:
     plain = COMMON_NAMES.get(part, part)
-    if plain == UNKNOT:
+    if plain.removeprefix("m") == UNKNOT:
         return Diagram.circle()
     codes = contents()["knots"] | contents()["links"]
     base = plain.removeprefix("m")
@@ -68,10 +71,10 @@ def _factor(part: str, name: str) -> Diagram:
         pd = codes[base]["pd"] if base in contents()["knots"] else codes[base]
         diagram = from_pd(pd)
         return diagram.mirror() if plain.startswith("m") else diagram
-    near = difflib.get_close_matches(plain, codes, n=1)
-    hint = f"did you mean {near[0]}? " if near else ""
     what = "" if part == name.strip() else f" in {quoted(name)}"
+    perko = "10_161 and 10_162 of older tables are one knot (Perko), so 10_165 is the last; "
     raise TorsadeError(
-        f"no knot or link is called {quoted(part)}{what}; {hint}known are the prime knots through "
-        f"{TABLE_CROSSINGS} crossings, such as 3_1 or m3_1, and links through {LINK_CROSSINGS}, such as L5a1"
+        f"no knot or link is called {quoted(part)}{what}; {perko if base == '10_166' else ''}known are the "
+        f"prime knots through {TABLE_CROSSINGS} crossings, such as 3_1 or m3_1, and links through "
+        f"{LINK_CROSSINGS}, such as L5a1"
     )

@@ -17,7 +17,7 @@ import random
 from torsade.topology.diagram import Diagram
 from torsade.topology.draft import Draft
 
-__all__ = ["reduced_by_passes", "simplify"]
+__all__ = ["reduced_by_passes", "simplify", "untwisted"]
 
 Faces = tuple[list[list[int]], list[int]]
 
@@ -58,6 +58,25 @@ def reduced_by_passes(diagram: Diagram) -> Diagram:
     draft = Draft(diagram)
     _reduce(draft)
     return draft.freeze()
+
+
+def untwisted(diagram: Diagram) -> Diagram:
+    """The diagram without crossings that touch a face twice: what hangs on one of them is turned over.
+
+    Crossings go in the order in which strands come to them, so that mirror images stay mirror images.
+    """
+    while True:
+        at = diagram.face_at
+        twice = (p for two in diagram.edges for p in two if p >= 0 and at[p] == at[p ^ 2])
+        sides = [(part, p) for p in twice if (part := _hanging(Draft(diagram), p)) is not None]
+        if not sides:
+            return diagram
+        first = [(part, p) for part, p in sides if p >> 2 == sides[0][1] >> 2]
+        part, p = min(first, key=lambda side: len(side[0]))
+        draft = Draft(diagram)
+        _turn_over(draft, part)
+        draft.remove([p >> 2])
+        diagram = draft.freeze()
 
 
 def _is_minimal(diagram: Diagram) -> bool:
