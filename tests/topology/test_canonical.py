@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import random
+from itertools import combinations
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from topology.drawings import scrambled
 from torsade.topology import Diagram, canonical_form, is_isomorphic
-from torsade.topology.codes import from_braid, from_gauss
+from torsade.topology.codes import from_braid, from_dt, from_gauss, to_dt
 from torsade.topology.tangle import integer, numerator, rational, rotated
 
 TREFOIL = from_braid([1, 1, 1])
@@ -52,6 +53,26 @@ def test_tangles_are_held_by_their_ends(seed: int) -> None:
     assert canonical_form(renumbered(d, rng)) == canonical_form(d)
     assert canonical_form(rotated(d)) == canonical_form(d)  # names go along
     assert canonical_form(d.renamed(d.ends[1:] + d.ends[:1])) != canonical_form(d)
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.lists(st.sampled_from([1, -1, 2, -2, 3, -3]), min_size=3, max_size=7), st.integers(0, 10**6))
+def test_directions_left_out_are_all_directions_tried(word: list[int], seed: int) -> None:
+    rng = random.Random(seed)
+    d = from_braid(word, 4)
+    other = rng.choice([d, d.mirror(), d.reflected(), from_braid(rng.sample(word, len(word)), 4)])
+    strands = range(other.n_strands)
+    tried = {canonical_form(other.reverse(chosen)) for n in range(5) for chosen in combinations(strands, n)}
+    assert is_isomorphic(d, renumbered(other, rng), unoriented=True) == (canonical_form(d) in tried)
+
+
+def test_links_of_many_strands() -> None:
+    """A chain of thirty rings: no choice of directions is tried one after the other."""
+    chain = from_braid([k for i in range(1, 30) for k in (i, i)])
+    mixed = chain.reverse(random.Random(1).sample(range(30), 11))
+    assert not is_isomorphic(chain, mixed)
+    assert is_isomorphic(chain, mixed, unoriented=True)
+    assert to_dt(from_dt(to_dt(mixed))) == to_dt(mixed)
 
 
 def test_mirror_images_and_directions() -> None:

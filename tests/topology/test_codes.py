@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 from itertools import permutations, product
 from typing import Any
 
@@ -13,7 +14,8 @@ from hypothesis import strategies as st
 from topology.drawings import closed_knots, needs_knots, scrambled, table
 from topology.invariants import colourings, determinant, signature
 from torsade.errors import TorsadeError
-from torsade.topology import Diagram, canonical_form, is_isomorphic
+from torsade.knots.bends import bends
+from torsade.topology import Diagram, canonical_form, is_isomorphic, pull_choices
 from torsade.topology.codes import (
     from_braid,
     from_dt,
@@ -27,6 +29,7 @@ from torsade.topology.codes import (
     to_unsigned_gauss,
 )
 from torsade.topology.seifert import turning
+from torsade.topology.tangle import integer
 
 CLOSED = closed_knots()
 BENDS = table("bends.json")
@@ -182,6 +185,36 @@ def test_tangles_there_and_back(seed: int) -> None:
     form = canonical_form(d)
     assert canonical_form(from_pd(to_open_pd(d), d.ends)) == form
     assert canonical_form(from_gauss(to_gauss(d), closed=False, boundary=d.ends)) == form
+
+
+@pytest.mark.parametrize("name", bends())
+def test_bends_keep_the_names_of_their_ends_however_they_are_pulled(name: str) -> None:
+    for choice in pull_choices(bends()[name].diagram):
+        d = bends()[name].diagram.pulled(choice)
+        again = from_pd(to_open_pd(d)), from_gauss(to_gauss(d), closed=False)
+        bounded = (
+            from_pd(to_open_pd(d), d.ends),
+            from_gauss(to_gauss(d), closed=False, boundary=d.ends),
+        )
+        for read in again + bounded:
+            assert canonical_form(read.pulled(choice)) == canonical_form(d)
+
+
+def test_strands_in_any_order_keep_the_names_of_their_ends() -> None:
+    """A knot beside them, and more of them than there are letters; other names are not kept."""
+    clasp = integer(3) | from_braid([1, 1, 1])
+    later = replace(clasp, starts=(clasp.starts[2], clasp.starts[1], clasp.starts[0]))
+    for d in (clasp, later, later.reverse([1])):
+        again = from_pd(to_open_pd(d), d.ends)
+        assert canonical_form(again.pulled("A1B1")) == canonical_form(d.pulled("A1B1"))
+    n = 30
+    row = from_gauss(
+        " | ".join(f"O{k}+ U{k + 1}+" for k in range(n)).replace("O0+ ", "").replace(f" U{n}+", ""),
+        closed=False,
+    )
+    assert canonical_form(from_pd(to_open_pd(row), row.ends)) == canonical_form(row)
+    other = integer(3).renamed(["NW", "SW", "SE", "NE"])
+    assert sorted(from_pd(to_open_pd(other)).ends) == ["A0", "A1", "B0", "B1"]
 
 
 def test_a_prime_drawing_is_found_again_from_its_shadow() -> None:

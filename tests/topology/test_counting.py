@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import time
 from collections import Counter
 from itertools import islice
 
@@ -296,3 +297,11 @@ def test_a_knot_in_one_strand_stays_when_its_ends_swing(name: str) -> None:
 
 def test_a_search_that_is_stopped_says_so() -> None:
     assert not circulation_range(bend_diagram("hunter"), limit=5).complete
+
+
+def test_a_search_takes_about_as_long_for_large_drawings() -> None:
+    """A limit of 20 stands for 4000 crossings drawn; each of these drawings has more than 1000 neighbours."""
+    start = time.perf_counter()
+    found = circulation_range(suture_diagram(11, -11), extra=2, limit=20)
+    assert (found.crossings, found.complete) == (22, False)
+    assert time.perf_counter() - start < 3

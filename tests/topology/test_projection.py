@@ -15,9 +15,11 @@ from numpy.typing import NDArray
 from topology.invariants import determinant, signature
 from torsade.errors import TorsadeError
 from torsade.knots import bend
-from torsade.topology import Diagram, canonical_form, is_isomorphic, project, simplify
+from torsade.topology import Diagram, canonical_form, is_isomorphic, project, simplify, state
 from torsade.topology.codes import from_braid, from_gauss
+from torsade.topology.measures import writhe
 from torsade.topology.tangle import closures
+from torsade.topology.views import total_curvature, turning_number
 
 FloatArray = NDArray[np.float64]
 
@@ -311,7 +313,7 @@ def test_regular_polygons_and_flat_drawings_are_seen() -> None:
         ([circle(), circle()], True, None, "edge .* of strand 0 and edge .* of strand 1 meet in space; move"),
         ([np.array([[0, 0, 0], [2, 0, 0], [1, 1, 0], [1, -1, 0.0]])], False, None, "edge 0 .* and edge 2"),
         ([np.array([[0, 0, 0], [2, 0, 0], [1, 0, 0.0]])], False, None, "edge 0 .* and edge 1 .* meet"),
-        ([circle(), circle()], (True,), None, "2 strands have 1 closed flags; give one for each"),
+        ([circle(), circle()], (True,), None, "2 strands have 1 closed flags; give one, or one for each"),
         ([circle()], True, (0, 0, 0), "the direction of view is .*; give three finite numbers"),
         ([circle()], True, (0, 1), "give three finite numbers, not all zero"),
     ],
@@ -347,6 +349,34 @@ def test_a_curve_keeps_its_diagram_when_it_is_turned_with_the_eye() -> None:
     q *= np.sign(np.linalg.det(q))
     turned = project([x @ q.T], True, q @ np.array([0.1, 0.2, math.sqrt(0.95)])).diagram
     assert canonical_form(turned) == canonical_form(project([x], True, (0.1, 0.2, math.sqrt(0.95))).diagram)
+
+
+@pytest.mark.parametrize("exponent", [-1020, -540, -535, -500, 333, 500, 515, 1015])
+def test_curves_of_any_size_are_seen_alike(exponent: int) -> None:
+    """To the last digit, where squares of lengths are no numbers."""
+    walk = np.cumsum(np.random.default_rng(5).normal(size=(60, 3)), axis=0)
+    seen, other = project([walk], closed=True), project([np.ldexp(walk, exponent)], closed=True)
+    assert other.diagram == seen.diagram
+    assert (other.parameter == seen.parameter).all()
+    assert (other.height == np.ldexp(seen.height, exponent)).all()
+    for measure in (writhe, turning_number, total_curvature):
+        assert measure(np.ldexp(walk, exponent), True) == measure(walk, True)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_is_counted_does_not_turn_with_the_drawing(seed: int) -> None:
+    """About the line of sight, as long as the ends are led out alike."""
+    rng = np.random.default_rng(seed)
+    for _ in range(20):
+        walks = [np.cumsum(rng.normal(size=(rng.integers(4, 12), 3)), axis=0) for _ in range(3)]
+        counted: dict[Any, set[tuple[float, int]]] = {}
+        for angle in np.linspace(0, 6, 5):
+            c, s = math.cos(angle), math.sin(angle)
+            seen = project([x @ [[c, s, 0], [-s, c, 0], [0, 0, 1]] for x in walks])
+            found = state(seen.diagram)
+            drawn = seen.n_led_out, seen.diagram.ends
+            counted.setdefault(drawn, set()).add((round(found.gamma, 9), found.whitney))
+        assert all(len(values) == 1 for values in counted.values())
 
 
 def test_strands_keep_their_order() -> None:

@@ -98,11 +98,11 @@ def refused(call: Any, *arguments: Any) -> str:
 
 def test_views_in_which_nothing_can_be_told_are_refused() -> None:
     through = [[-1, 0, 1], [1, 0, 1], [1, 1, 0.4], [0, 1, 0], [0, 0, 0]]
-    assert "edges 0 and 3 are seen to touch along [0. 0. 1.]" in refused(
+    assert "seen along [0. 0. 1.], edge 0 of curve 0 and edge 3 of curve 0 touch" in refused(
         directional_writhe, through, False, ABOVE
     )
     flat = [[-1, 0, 0], [1, 0, 0], [1, 1, 0.4], [0, 1, 0], [0, -1, 0]]
-    assert "edges 0 and 3 are seen to touch" in refused(directional_writhe, flat, False, ABOVE)
+    assert "edge 3 of curve 0 meet in space" in refused(directional_writhe, flat, False, ABOVE)
     assert "edge 1 is seen as a point" in refused(
         turning_number, [[0, 0, 0], [1, 0, 0], [1, 0, 1], [2, 2, 2]], False
     )

@@ -6,10 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from torsade.errors import TorsadeError
 from torsade.segments import segment_distance
+from torsade.topology.polygons import Curves, polygons
 
 __all__ = ["TOLERANCE", "Degenerate", "Polylines", "View", "cross_over", "polylines"]
 
@@ -39,6 +40,8 @@ class Polylines:
         last: nodes at which they end, shape (n_edges, 3).
         strand: the polyline of each edge, shape (n_edges,).
         edge: its number there, shape (n_edges,).
+        exponent: coordinates are in units of 2^exponent.
+        what: what a polyline is called in messages.
     """
 
     nodes: tuple[FloatArray, ...]
@@ -47,6 +50,8 @@ class Polylines:
     last: FloatArray
     strand: IndexArray
     edge: IndexArray
+    exponent: int
+    what: str
 
     def follow(self, i: IndexArray, j: IndexArray) -> BoolArray:
         """Whether of edges i < j one follows the other at a node."""
@@ -60,7 +65,7 @@ class Polylines:
 
     def name(self, e: int) -> str:
         """An edge in words."""
-        return f"edge {self.edge[e]} of strand {self.strand[e]}"
+        return f"edge {self.edge[e]} of {self.what} {self.strand[e]}"
 
 
 @dataclass(frozen=True)
@@ -68,7 +73,7 @@ class View:
     """The crossings of polylines along a direction, in the order in which strands meet them.
 
     Arrays have a row for each crossing, and columns for the upper and the lower strand; `nodes` are those
-    of all polylines in the plane of the view.
+    of all polylines in the plane of the view. Lengths are in the unit of the polylines.
     """
 
     strand: IndexArray
@@ -79,37 +84,19 @@ class View:
     nodes: tuple[FloatArray, ...]
 
 
-def polylines(strands: Sequence[ArrayLike], closed: bool | Sequence[bool]) -> Polylines:
-    """Checked polylines."""
-    nodes = tuple(np.asarray(x, dtype=np.float64) for x in strands)
-    if not nodes:
-        raise TorsadeError("there is no strand; give at least one, of shape (n, 3)")
-    flags = (bool(closed),) * len(nodes) if isinstance(closed, bool | np.bool_) else tuple(map(bool, closed))
-    if len(flags) != len(nodes):
-        raise TorsadeError(f"{len(nodes)} strands have {len(flags)} closed flags; give one for each")
-    firsts, lasts = [], []
-    for k, (x, is_closed) in enumerate(zip(nodes, flags, strict=True)):
-        if x.ndim != 2 or x.shape[1] != 3:
-            raise TorsadeError(f"strand {k} has nodes of shape {x.shape}; give (n, 3)")
-        least = 3 if is_closed else 2
-        if len(x) < least:
-            raise TorsadeError(f"strand {k} has {len(x)} nodes; give at least {least}")
-        finite = np.isfinite(x).all(axis=1)
-        if not finite.all():
-            i = int(np.argmin(finite))
-            raise TorsadeError(f"node {i} of strand {k} is {x[i].tolist()}; give finite coordinates")
-        firsts.append(x if is_closed else x[:-1])
-        lasts.append(np.roll(x, -1, axis=0) if is_closed else x[1:])
-        short = np.linalg.norm(lasts[-1] - firsts[-1], axis=1) <= TOLERANCE * np.ptp(x, axis=0).max()
-        if short.any():
-            i = int(np.argmax(short))
-            raise TorsadeError(
-                f"nodes {i} and {(i + 1) % len(x)} of strand {k} are the same point; remove one"
-            )
-    counts = [len(x) for x in firsts]
+def polylines(curves: Curves, closed: bool | Sequence[bool], what: str = "strand") -> Polylines:
+    """Checked polylines, called `what` in messages.
+
+    Raises:
+        TorsadeError: as `polygons` does.
+    """
+    given = polygons(curves, closed, what, TOLERANCE)
+    corners = [given.corners(k) for k in range(len(given.curves))]
+    counts = [len(x) - 1 for x in corners]
     strand = np.repeat(np.arange(len(counts)), counts)
     edge = np.concatenate([np.arange(n) for n in counts])
-    return Polylines(nodes, flags, np.concatenate(firsts), np.concatenate(lasts), strand, edge)
+    first, last = np.concatenate([x[:-1] for x in corners]), np.concatenate([x[1:] for x in corners])
+    return Polylines(given.curves, given.closed, first, last, strand, edge, given.exponent, what)
 
 
 def cross_over(lines: Polylines, axes: FloatArray) -> View:
@@ -198,7 +185,7 @@ def _crossed(
             k = int(np.argmax(meeting | folded))
             raise TorsadeError(_meeting(lines, int(e[k]), int(f[k])))
         k = int(np.argmax(unclear))
-        raise Degenerate(f"{lines.name(int(i[k]))} and {lines.name(int(j[k]))} touch or overlap in it")
+        raise Degenerate(f"{lines.name(int(i[k]))} and {lines.name(int(j[k]))} touch or overlap")
     return s, t, inside
 
 
@@ -228,10 +215,10 @@ def _first_met(ij: IndexArray, st: FloatArray) -> IndexArray:
     order = np.lexsort((along, edge))
     e, x = edge[order], along[order]
     if ((e[1:] == e[:-1]) & (x[1:] - x[:-1] <= TOLERANCE)).any():
-        raise Degenerate("three strands meet in a point of it")
+        raise Degenerate("three strands meet in a point")
     _, first = np.unique(order // 2, return_index=True)
     return np.argsort(first, kind="stable") if n else np.arange(0)
 
 
 def _meeting(lines: Polylines, e: int, f: int) -> str:
-    return f"{lines.name(e)} and {lines.name(f)} meet in space; move the strands apart"
+    return f"{lines.name(e)} and {lines.name(f)} meet in space; move them apart"

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
+from torsade.topology._ports import faces
 from torsade.topology.codes._planar import ends_around
 from torsade.topology.diagram import Diagram, strand_name
 from torsade.topology.draft import Draft
@@ -50,14 +52,14 @@ def lead_out(
 
 def _led_out(draft: Draft, end: int) -> int:
     """Lead one end out above everything; return over how many edges it went."""
-    around, at = _faces_around_tips(draft.mate, len(draft.ends))
+    sides, at = faces(draft.mate, {p: p for p in range(-len(draft.ends), 0)})  # they go around all tips
     outside = _outside(draft, at, end)
     came: dict[int, tuple[int, int]] = {at[end]: (-1, 0)}
     layer = [at[end]]
     while not outside & came.keys():
         following = []
         for f in layer:
-            for p in around[f]:
+            for p in sides[f]:
                 g = at[draft.mate[p]]
                 if g not in came:
                     came[g] = f, p
@@ -87,23 +89,6 @@ def _outside(draft: Draft, at: list[int], end: int) -> set[int]:
     return next(({at[p]} for p in draft.outer if p in piece), {at[end]})
 
 
-def _faces_around_tips(mate: Sequence[int], m: int) -> tuple[list[list[int]], list[int]]:
-    """Faces as in `Draft.faces`, where a face goes around the tip of each end and back."""
-    at = [-1] * len(mate)
-    faces: list[list[int]] = []
-    for first in range(-m, len(mate) - m):
-        if at[first] >= 0:
-            continue
-        face, p = [], first
-        while at[p] < 0:
-            at[p] = len(faces)
-            face.append(p)
-            q = mate[p]
-            p = q & ~3 | q - 1 & 3 if q >= 0 else q
-        faces.append(face)
-    return faces, at
-
-
 def _angles(tips: Sequence[Sequence[float]]) -> list[float]:
     """The angle at which each end is seen from the middle of all."""
     x = np.asarray(tips, dtype=np.float64)
@@ -120,6 +105,8 @@ def _turned(block: list[int], angles: list[float]) -> list[int]:
 
 
 def _ordered(draft: Draft, order: list[int]) -> Diagram:
-    """The diagram with its ends in this order."""
-    draft.outer = [p for p in draft.outer if p >= 0]  # a piece with ends has its outer faces around them
-    return draft.freeze(order)
+    """The diagram with its ends in this order, its outer darts those of closed pieces."""
+    diagram = draft.freeze(order)
+    return replace(
+        diagram, outer=tuple(p for p in diagram.outer if diagram.pieces[diagram.piece_at[p]][0] >= 0)
+    )

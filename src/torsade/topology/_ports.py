@@ -1,10 +1,10 @@
-"""Walks through bare ports, before there is a diagram: directions of strands, connected pieces."""
+"""Walks through bare ports, before there is a diagram: directions of strands, faces, connected pieces."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
-__all__ = ["CIRCLE", "connected", "oriented"]
+__all__ = ["CIRCLE", "around", "connected", "faces", "oriented"]
 
 CIRCLE = 1 << 30
 """Stands in the starts of a diagram for a strand that is a circle without crossings."""
@@ -56,20 +56,57 @@ def oriented(
     return begun, last, entry
 
 
+def around(ends: Sequence[int]) -> dict[int, int]:
+    """Where a walk with the outside on its left comes in again, by the end where it goes out: as for `faces`.
+
+    Args:
+        ends: counterclockwise around the drawing.
+    """
+    return dict(zip(ends, [*ends[1:], *ends[:1]], strict=True))
+
+
+def faces(mate: Sequence[int], beyond: Mapping[int, int]) -> tuple[list[list[int]], list[int]]:
+    """The darts around each face, counterclockwise, and the face on the left of each dart.
+
+    Ports that face themselves, where a crossing is gone, are left out; their face is -1.
+
+    Args:
+        mate: the port that each port faces; the last are those of ends.
+        beyond: by which end a walk around a face goes on after it came to an end; by the same end if the face
+            goes around its tip.
+    """
+    at = [-1] * len(mate)
+    found: list[list[int]] = []
+    m = len(beyond)
+    for first in range(-m, len(mate) - m):
+        if at[first] >= 0 or mate[first] == first:
+            continue
+        face, p, f = [], first, len(found)
+        while at[p] < 0:
+            at[p] = f
+            face.append(p)
+            q = mate[p]
+            p = q & ~3 | q - 1 & 3 if q >= 0 else beyond[q]
+        found.append(face)
+    return found, at
+
+
 def connected(mate: Sequence[int], m: int) -> list[list[int]]:
     """The ports of each connected piece, sorted; all that touches an end is one piece, and comes first."""
-    seen: set[int] = set()
+    seen = bytearray(len(mate))
     pieces = []
     for first in range(-m, len(mate) - m):
-        if first in seen:
+        if seen[first]:
             continue
-        piece = {first} if first >= 0 else set(range(-m, 0))
-        todo = list(piece)
-        while todo:
-            p = todo.pop()
-            near = [mate[p]] if p < 0 else [mate[p], p & ~3 | p + 1 & 3]
-            todo += [q for q in near if q not in piece]
-            piece.update(near)
-        seen |= piece
+        piece = list(range(-m, 0) if first < 0 else range(first, first + 4))
+        for p in piece:
+            seen[p] = 1
+        for p in piece:  # grows as it is read
+            q = mate[p]
+            if not seen[q]:
+                whole = range(q & ~3, (q & ~3) + 4)
+                for near in whole:
+                    seen[near] = 1
+                piece += whole
         pieces.append(sorted(piece))
     return pieces

@@ -221,10 +221,8 @@ class Diagram(PlanarMap):
         outer = {f for f, face in enumerate(self.faces) if any(p < 0 for p in face)}
         named = {self.piece_at[p]: self.face_at[p] for p in reversed(self.outer)}
         for k, piece in enumerate(self.pieces):
-            if k in named:
-                outer.add(named[k])
-            elif all(p >= 0 for p in piece):
-                faces = {self.face_at[p] for p in piece}
+            if piece[0] >= 0:  # a piece with ends has its outer faces around them
+                faces = {named[k]} if k in named else {self.face_at[p] for p in piece}
                 outer.add(max(faces, key=lambda f: (len(self.faces[f]), -f)))
         return frozenset(outer)
 
@@ -301,7 +299,11 @@ class Diagram(PlanarMap):
         return Diagram.assemble(mate, map(over, self.starts), self.ends[::-1], outer=outer)
 
     def reverse(self, strands: Iterable[int] | None = None) -> Diagram:
-        """The same drawing with all strands, or those given, running the other way; ends keep names."""
+        """The same drawing with all strands, or those given, running the other way; ends keep names.
+
+        Raises:
+            TorsadeError: there is no such strand.
+        """
         chosen = set(range(self.n_strands) if strands is None else strands)
         if not chosen <= set(range(self.n_strands)):
             raise TorsadeError(
@@ -324,6 +326,9 @@ class Diagram(PlanarMap):
 
         Args:
             ends: names of the pulled ends, one for each open strand: "A1B1" or ["A1", "B1"].
+
+        Raises:
+            TorsadeError: names that are not one end of each open strand.
         """
         given = re.findall(r"[^\W\d_]+\d+", ends) if isinstance(ends, str) else list(ends)
         wanted = set(given)
@@ -341,7 +346,11 @@ class Diagram(PlanarMap):
         return replace(self, starts=tuple(s for s in self.starts if s != CIRCLE))
 
     def renamed(self, ends: Iterable[str]) -> Diagram:
-        """The same diagram with other names of its ends, counterclockwise."""
+        """The same diagram with other names of its ends, counterclockwise.
+
+        Raises:
+            TorsadeError: fewer names or more than there are ends, or one of them twice.
+        """
         names = tuple(ends)
         if len(names) != len(self.ends) or len(set(names)) != len(names):
             raise TorsadeError(f"{len(self.ends)} ends are named {list(names)}; give each a name of its own")

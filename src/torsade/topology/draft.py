@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Container, Iterable, Sequence
 
+from torsade.topology._ports import around, faces
 from torsade.topology.diagram import CIRCLE, Diagram
 
 __all__ = ["Draft"]
@@ -72,20 +73,7 @@ class Draft:
 
     def faces(self) -> tuple[list[list[int]], list[int]]:
         """The darts around each face, and the face on the left of each dart."""
-        mate, m = self.mate, len(self.ends)
-        at = [-1] * len(mate)
-        faces: list[list[int]] = []
-        for first in range(-m, len(mate) - m):
-            if at[first] >= 0 or mate[first] == first:
-                continue
-            face, p, f = [], first, len(faces)
-            while at[p] < 0:
-                at[p] = f
-                face.append(p)
-                q = mate[p]
-                p = (q & ~3 | q - 1 & 3) if q >= 0 else q + 1 if q < -1 else -m
-            faces.append(face)
-        return faces, at
+        return faces(self.mate, around(range(-len(self.ends), 0)))
 
     # --- cutting and pasting
 

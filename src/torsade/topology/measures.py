@@ -128,9 +128,7 @@ class _Block(NamedTuple):
 
 def _pack(p: Polygons) -> _Packed:
     corners = [p.corners(k) for k in range(len(p.curves))]
-    x = np.concatenate(corners).T
-    # A power of two changes no digit, and keeps sixth powers of distances within the range of numbers.
-    nodes = np.ascontiguousarray(np.ldexp(x, -np.frexp(np.abs(x).max())[1]))
+    nodes = np.ascontiguousarray(np.concatenate(corners).T)
     e = np.diff(nodes, axis=1)
     edges = np.concatenate([e, (e * e).sum(axis=0)[None]])
     count = np.array([len(c) for c in corners])

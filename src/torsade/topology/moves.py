@@ -67,6 +67,9 @@ def add_kink(diagram: Diagram, dart: int, sign: int, left: bool = True) -> Diagr
 
     Give `CIRCLE` as the dart to put a kink into the first circle without crossings.
 
+    Raises:
+        TorsadeError: another sign than +1 or -1, no such port, or no circle without crossings.
+
     >>> from torsade.topology.diagram import Diagram
     >>> add_kink(Diagram.circle(), CIRCLE, -1).signs
     (-1,)
@@ -94,7 +97,11 @@ def add_kink(diagram: Diagram, dart: int, sign: int, left: bool = True) -> Diagr
 
 
 def remove_kink(diagram: Diagram, dart: int) -> Diagram:
-    """First move, back: take away the crossing of a loop, given by one of `kinks`."""
+    """First move, back: take away the crossing of a loop, given by one of `kinks`.
+
+    Raises:
+        TorsadeError: the dart is none of them.
+    """
     if dart not in kinks(diagram):
         raise TorsadeError(f"port {dart} is on no face of one edge; give one of {list(kinks(diagram))}")
     draft = Draft(diagram)
@@ -103,8 +110,20 @@ def remove_kink(diagram: Diagram, dart: int) -> Diagram:
 
 
 def add_bigon(diagram: Diagram, dart: int, other: int, over: bool = True) -> Diagram:
-    """Second move: push the edge of a dart through their common face, over or under that of another."""
-    if (dart, other) not in fingers(diagram):
+    """Second move: push the edge of a dart through their common face, over or under that of another.
+
+    Args:
+        diagram: what to change.
+        dart: whose edge is pushed.
+        other: whose edge it comes to pass; around the same face, of another edge.
+        over: whether it passes above.
+
+    Raises:
+        TorsadeError: the darts are no pair of `fingers`.
+    """
+    at = diagram.edge_at, diagram.face_at
+    known = dart in diagram.ports and other in diagram.ports
+    if not known or at[0][dart] == at[0][other] or at[1][dart] != at[1][other]:
         raise TorsadeError(
             f"darts {dart} and {other} are not of two edges around one face; "
             "give one of the pairs of `fingers`"
@@ -118,7 +137,11 @@ def add_bigon(diagram: Diagram, dart: int, other: int, over: bool = True) -> Dia
 
 
 def remove_bigon(diagram: Diagram, dart: int) -> Diagram:
-    """Second move, back: part two strands, one above the other twice, given by one of `bigons`."""
+    """Second move, back: part two strands, one above the other twice, given by one of `bigons`.
+
+    Raises:
+        TorsadeError: the dart is none of them.
+    """
     if dart not in bigons(diagram):
         raise TorsadeError(f"port {dart} is no upper dart of a bigon; give one of {list(bigons(diagram))}")
     draft = Draft(diagram)
@@ -127,7 +150,11 @@ def remove_bigon(diagram: Diagram, dart: int) -> Diagram:
 
 
 def slide_triangle(diagram: Diagram, dart: int) -> Diagram:
-    """Third move: slide the upper strand over the crossing of the other two, given by one of `triangles`."""
+    """Third move: slide the upper strand over the crossing of the other two, given by one of `triangles`.
+
+    Raises:
+        TorsadeError: the dart is none of them.
+    """
     if dart not in triangles(diagram):
         raise TorsadeError(
             f"port {dart} is no upper dart of a triangle; give one of {list(triangles(diagram))}"

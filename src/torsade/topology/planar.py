@@ -19,7 +19,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
-from torsade.topology._ports import connected
+from torsade.topology._ports import around, connected, faces
 
 __all__ = ["PlanarMap"]
 
@@ -78,24 +78,20 @@ class PlanarMap:
     # --- faces
 
     @cached_property
+    def _walked(self) -> tuple[tuple[tuple[int, ...], ...], tuple[int, ...]]:
+        """The faces, and the one at each dart."""
+        found, at = faces(self.mate, around(range(-len(self.ends), 0)))
+        return tuple(map(tuple, found)), tuple(at)
+
+    @cached_property
     def faces(self) -> tuple[tuple[int, ...], ...]:
         """The faces, each as the darts that have it on their left, counterclockwise."""
-        seen: set[int] = set()
-        faces = []
-        for p in self.ports:
-            if p not in seen:
-                faces.append(tuple(self.cycle(p, self.corner)))
-                seen.update(faces[-1])
-        return tuple(faces)
+        return self._walked[0]
 
     @cached_property
     def face_at(self) -> tuple[int, ...]:
         """The face on the left of each dart, indexed like `mate`."""
-        at = [0] * len(self.mate)
-        for f, face in enumerate(self.faces):
-            for p in face:
-                at[p] = f
-        return tuple(at)
+        return self._walked[1]
 
     # --- pieces and planarity
 

@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from torsade import curve
 from torsade.arrays import Floats
 from torsade.errors import TorsadeError
 
@@ -17,10 +16,19 @@ Curves = ArrayLike | Sequence[ArrayLike]
 
 
 class Polygons(NamedTuple):
-    """Checked polygonal curves: nodes of each, shape (n, 3), and which of them are closed."""
+    """Checked polygonal curves, in a unit of length in which no coordinate is greater than one.
+
+    What is measured here does not depend on the unit; far from one, squares of lengths are no numbers.
+
+    Attributes:
+        curves: nodes of each, shape (n, 3), in units of 2^exponent: no digit is changed.
+        closed: which of them are closed.
+        exponent: of the unit.
+    """
 
     curves: tuple[Floats, ...]
     closed: tuple[bool, ...]
+    exponent: int
 
     def corners(self, k: int) -> Floats:
         """Nodes of curve k along all its edges, shape (n_edges + 1, 3): a closed one comes back to node 0."""
@@ -28,57 +36,76 @@ class Polygons(NamedTuple):
         return np.concatenate([x, x[:1]]) if self.closed[k] else x
 
 
-def polygons(curves: Curves, closed: bool | Sequence[bool]) -> Polygons:
+def polygons(
+    curves: Curves, closed: bool | Sequence[bool], what: str = "curve", shortest: float = 0.0
+) -> Polygons:
     """Check curves; closed says of all of them, or of each, whether its last node joins its first.
+
+    Args:
+        curves: nodes of one or of several.
+        closed: for all, or for each.
+        what: what they are called in messages.
+        shortest: an edge of at most this fraction of its curve's extent counts as none.
 
     Raises:
         TorsadeError: no curve, a wrong number of closed, nodes of another shape than (n, 3), fewer than 2
             nodes (3 when closed), a coordinate that is not finite, or an edge without length.
     """
-    several: Any = [curves] if _is_one(curves) else curves
+    several: Any = [curves] if _is_one(curves, what) else curves
     given: list[ArrayLike] = list(several)
     flags = (closed,) * len(given) if isinstance(closed, bool | np.bool_) else tuple(closed)
     if len(flags) != len(given):
-        raise TorsadeError(
-            f"{len(flags)} values of closed are given for {len(given)} curves; give one, or one for each"
+        raise TorsadeError(f"{len(given)} {what}s have {len(flags)} closed flags; give one, or one for each")
+    checked = [
+        _checked(x, 3 if c else 2, f"{what} {k}") for k, (x, c) in enumerate(zip(given, flags, strict=True))
+    ]
+    # A power of two changes no digit, and keeps powers of lengths within the range of numbers.
+    exponent = max(int(np.frexp(np.abs(x).max())[1]) for x in checked)
+    found = Polygons(tuple(np.ldexp(x, -exponent) for x in checked), tuple(map(bool, flags)), exponent)
+    for k, x in enumerate(found.curves):
+        short = (
+            np.linalg.norm(np.diff(found.corners(k), axis=0), axis=1) <= shortest * np.ptp(x, axis=0).max()
         )
-    checked = tuple(_checked(x, bool(c), k) for k, (x, c) in enumerate(zip(given, flags, strict=True)))
-    return Polygons(checked, tuple(bool(c) for c in flags))
+        if short.any():
+            i = int(np.argmax(short))
+            again = "" if i + 1 < len(x) else "; a closed curve joins its last node to the first by itself"
+            raise TorsadeError(
+                f"nodes {i} and {(i + 1) % len(x)} of {what} {k} are the same point; remove one{again}"
+            )
+    return found
 
 
 def polygon(x: ArrayLike, closed: bool) -> Floats:
-    """Check the nodes of one curve; shape (n, 3).
+    """Check the nodes of one curve; shape (n, 3), in units of a power of two.
 
     Raises:
         TorsadeError: as `polygons` does.
     """
-    return _checked(x, closed, 0)
+    return polygons([x], closed).curves[0]
 
 
-def _is_one(curves: Curves) -> bool:
+def _is_one(curves: Curves, what: str) -> bool:
     """Whether these are the nodes of one curve."""
     if not isinstance(curves, Sequence | np.ndarray) or len(curves) == 0:
-        raise TorsadeError("there is no curve to measure; give nodes of shape (n, 3) or a list of such")
+        raise TorsadeError(f"there is no {what}; give at least one, nodes of shape (n, 3)")
     node = curves[0]
     return all(np.isscalar(c) for c in node) if isinstance(node, Sequence) else np.ndim(node) == 1
 
 
-def _checked(x: ArrayLike, closed: bool, k: int) -> Floats:
+def _checked(x: ArrayLike, least: int, name: str) -> Floats:
     try:
-        x = np.array(x, dtype=np.float64)
+        nodes = np.array(x, dtype=np.float64)
     except (TypeError, ValueError) as error:
-        raise TorsadeError(f"curve {k} is not an array of numbers; give nodes of shape (n, 3)") from error
-    l = curve.edge_lengths(x, closed)
-    if not np.all(np.isfinite(x)):
-        node = int(np.argmin(np.isfinite(x).all(axis=1)))
-        raise TorsadeError(f"node {node} of curve {k} is {x[node]}; give finite coordinates")
-    if not np.all(l > 0):
-        edge = int(np.argmin(l > 0))
-        again = "; a closed curve joins its last node to the first by itself" if edge == len(l) - 1 else ""
-        raise TorsadeError(
-            f"edge {edge} of curve {k} has no length; remove the repeated node at its end{again}"
-        )
-    return np.asarray(x)
+        raise TorsadeError(f"{name} is not an array of numbers; give nodes of shape (n, 3)") from error
+    if nodes.ndim != 2 or nodes.shape[1] != 3:
+        raise TorsadeError(f"{name} has nodes of shape {nodes.shape}; give (n, 3)")
+    if len(nodes) < least:
+        raise TorsadeError(f"{name} has {len(nodes)} nodes; give at least {least}")
+    finite = np.isfinite(nodes).all(axis=1)
+    if not finite.all():
+        i = int(np.argmin(finite))
+        raise TorsadeError(f"node {i} of {name} is {nodes[i].tolist()}; give finite coordinates")
+    return nodes
 
 
 def unit_direction(direction: ArrayLike) -> Floats:

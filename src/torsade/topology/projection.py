@@ -67,7 +67,8 @@ def project(
     Ends of open strands are put on a circle around the drawing, in the order in which they lie on its
     outer face. What lies there in separate pieces follows in the order of the angles at which the first
     end of each piece is seen from the middle. An end in the midst of the drawing is led out above
-    everything, over as few edges as possible.
+    everything, over as few edges as possible. Of a closed curve that crosses nothing a circle is kept, not
+    the way it runs.
 
     Args:
         strands: nodes [m] of each polyline, shapes (n, 3).
@@ -94,8 +95,9 @@ def project(
             refused.append(str(reason))
             continue
         diagram, n_led_out = _drawn(lines, view)
+        height = np.ldexp(view.height, lines.exponent)
         return Projection(
-            diagram, d, tuple(refused), view.strand, view.edge, view.parameter, view.height, n_led_out
+            diagram, d, tuple(refused), view.strand, view.edge, view.parameter, height, n_led_out
         )
     raise TorsadeError(
         f"{_TRIES} directions show no clear drawing, the last because {refused[-1]}; nodes may repeat or "

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from torsade.topology._ports import around, faces
 from torsade.topology.diagram import Diagram
 from torsade.topology.draft import Draft
 
@@ -71,45 +72,24 @@ def _led_elsewhere(
 def _ways_out(mate: list[int], m: int, end: int) -> Iterator[tuple[int, tuple[int, ...]]]:
     """For each gap between ends other than `end`: the end after it, counterclockwise, and a shortest way.
 
-    A way is the darts that it crosses from left to right. `end` counts as a tip within its face.
+    A way is the darts that it crosses from left to right. `end` is taken off the circle: its face goes around
+    its tip and back.
     """
-    around, at = _faces(mate, m, end)
+    others = [p for p in range(-m, 0) if p != end]
+    sides, at = faces(mate, {end: end} | around(others))
     ways: dict[int, tuple[int, ...]] = {at[end]: ()}
     layer = [at[end]]
     while layer:
         following = []
         for f in layer:
-            for p in around[f]:
+            for p in sides[f]:
                 if p != end and mate[p] != end and (g := at[mate[p]]) not in ways:
                     ways[g] = (*ways[f], p)
                     following.append(g)
         layer = following
-    for p in range(-m, 0):
-        if p != end and at[p] in ways:
+    for p in others:
+        if at[p] in ways:
             yield p, ways[at[p]]
-
-
-def _faces(mate: list[int], m: int, end: int) -> tuple[list[list[int]], list[int]]:
-    """Faces as in `Draft.faces`, with `end` taken off the circle: they go around its tip and back."""
-    at = [-1] * len(mate)
-    faces: list[list[int]] = []
-    for first in range(-m, len(mate) - m):
-        if at[first] >= 0 or mate[first] == first:
-            continue
-        face, p = [], first
-        while at[p] < 0:
-            at[p] = len(faces)
-            face.append(p)
-            q = mate[p]
-            p = q & ~3 | q - 1 & 3 if q >= 0 else q if q == end else _next(q, m, end)
-        faces.append(face)
-    return faces, at
-
-
-def _next(q: int, m: int, end: int) -> int:
-    """The end that follows q counterclockwise, leaving out one."""
-    following = q + 1 if q < -1 else -m
-    return _next(following, m, end) if following == end else following
 
 
 def _before(end: int, gap: int, m: int) -> list[int]:

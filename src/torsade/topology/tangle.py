@@ -60,7 +60,11 @@ def integer(n: int) -> Diagram:
 
 
 def rational(*twists: int) -> Diagram:
-    """Conway's rational tangle: the product of integer tangles, so that `rational(3, 2)` is 3 2."""
+    """Conway's rational tangle: the product of integer tangles, so that `rational(3, 2)` is 3 2.
+
+    Raises:
+        TorsadeError: no twists are given.
+    """
     if not twists:
         raise TorsadeError("a rational tangle of no twists; give at least one integer")
     tangle = integer(twists[0])
@@ -70,7 +74,11 @@ def rational(*twists: int) -> Diagram:
 
 
 def rotated(tangle: Diagram, quarters: int = 1) -> Diagram:
-    """The tangle turned counterclockwise by quarter turns: the end at SW comes to SE."""
+    """The tangle turned counterclockwise by quarter turns: the end at SW comes to SE.
+
+    Raises:
+        TorsadeError: a tangle without exactly four ends.
+    """
     m = len(_four(tangle).ends)
     k = -quarters % m
     mate = [p if p >= 0 else (p - k) % m - m for p in tangle.mate]
@@ -81,30 +89,54 @@ def rotated(tangle: Diagram, quarters: int = 1) -> Diagram:
 
 
 def add(a: Diagram, b: Diagram) -> Diagram:
-    """The sum a + b of tangles with four ends each: b stands on the right of a."""
+    """The sum a + b of tangles with four ends each: b stands on the right of a.
+
+    Raises:
+        TorsadeError: a tangle without exactly four ends.
+    """
     sw, se, ne, nw = range(4)
     joins = [(se, 4 + sw), (ne, 4 + nw)]
     return _glued([_four(a), _four(b)], joins, [sw, 4 + se, 4 + ne, nw])
 
 
 def multiply(a: Diagram, b: Diagram) -> Diagram:
-    """Conway's product a b: a is reflected in its diagonal from NW to SE, then b is added."""
+    """Conway's product a b: a is reflected in its diagonal from NW to SE, then b is added.
+
+    Raises:
+        TorsadeError: a tangle without exactly four ends.
+    """
     # Reflected, the ends come in the order NW, NE, SE, SW; NE and SW have changed places.
     return add(rotated(_four(a).reflected(), 1), b)
 
 
 def numerator(tangle: Diagram) -> Diagram:
-    """The closure of a tangle with four ends that joins NW to NE and SW to SE."""
+    """The closure of a tangle with four ends that joins NW to NE and SW to SE.
+
+    Raises:
+        TorsadeError: a tangle without exactly four ends.
+    """
     return _closed(_four(tangle), [(0, 1), (2, 3)])
 
 
 def denominator(tangle: Diagram) -> Diagram:
-    """The closure of a tangle with four ends that joins NW to SW and NE to SE."""
+    """The closure of a tangle with four ends that joins NW to SW and NE to SE.
+
+    Raises:
+        TorsadeError: a tangle without exactly four ends.
+    """
     return _closed(_four(tangle), [(1, 2), (0, 3)])
 
 
 def close(tangle: Diagram, joins: Iterable[tuple[str, str]]) -> Diagram:
-    """The closure that joins ends, given by name, outside the circle and without crossings."""
+    """The closure that joins ends, given by name, outside the circle and without crossings.
+
+    Args:
+        tangle: with any number of ends.
+        joins: pairs of their names, such as [("A0", "B0"), ("A1", "B1")].
+
+    Raises:
+        TorsadeError: joins without each end once, or that cross outside the circle.
+    """
     place = {name: k for k, name in enumerate(tangle.ends)}
     pairs = [tuple(two) for two in joins]
     if sorted(name for two in pairs for name in two) != sorted(place):
@@ -161,7 +193,11 @@ def union(a: Diagram, b: Diagram) -> Diagram:
 
 
 def cut(diagram: Diagram, edge: int = 0) -> Diagram:
-    """A closed diagram cut open at an edge: a tangle of one strand, with ends A0 and A1, beside the rest."""
+    """A closed diagram cut open at an edge: a tangle of one strand, with ends A0 and A1, beside the rest.
+
+    Raises:
+        TorsadeError: the diagram has ends, or no such edge.
+    """
     if diagram.ends:
         raise TorsadeError(f"the diagram has ends {' '.join(diagram.ends)}; give a closed one to cut")
     if not diagram.edges and diagram.circles and edge == 0:
@@ -181,6 +217,9 @@ def cut(diagram: Diagram, edge: int = 0) -> Diagram:
 def connected_sum(a: Diagram, b: Diagram, edges: tuple[int, int] = (0, 0)) -> Diagram:
     """The connected sum of two closed diagrams at one edge of each, by default the first of strand A.
 
+    Raises:
+        TorsadeError: as `cut` does.
+
     >>> from torsade.topology.codes import from_braid
     >>> trefoil = from_braid([1, 1, 1])
     >>> (trefoil @ trefoil).n_crossings, len(summands(trefoil @ trefoil))
@@ -192,7 +231,11 @@ def connected_sum(a: Diagram, b: Diagram, edges: tuple[int, int] = (0, 0)) -> Di
 
 
 def split(diagram: Diagram) -> tuple[Diagram, ...]:
-    """The split components of a closed diagram that show: its connected pieces, then its circles."""
+    """The split components of a closed diagram that show: its connected pieces, then its circles.
+
+    Raises:
+        TorsadeError: the diagram has ends.
+    """
     if diagram.ends:
         raise TorsadeError(f"the diagram has ends {' '.join(diagram.ends)}; close it first")
     pieces = [_part(diagram, piece) for piece in diagram.pieces]
@@ -204,6 +247,9 @@ def summands(diagram: Diagram) -> tuple[Diagram, ...]:
 
     Circles that cross two edges only are cut along, so each part has no such circle. The parts of a
     drawing of a composite knot need not show: `simplify` first, for what is prime is then seldom hidden.
+
+    Raises:
+        TorsadeError: the diagram has ends.
     """
     parts: list[Diagram] = []
     todo = list(split(diagram))

@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 from torsade import curve
 from torsade.arrays import Floats, Ints
 from torsade.errors import TorsadeError
-from torsade.topology.polygons import Curves, Polygons, polygon, polygons, unit_direction
+from torsade.topology._crossings import Degenerate, cross_over, polylines
+from torsade.topology.polygons import Curves, polygon, unit_direction
 
 __all__ = ["directional_crossing_number", "directional_writhe", "total_curvature", "turning_number"]
 
@@ -19,18 +20,18 @@ def directional_writhe(curves: Curves, closed: bool | Sequence[bool], direction:
     """Sum of the signs of all crossings of one or several curves seen along a direction, shape (3,).
 
     A crossing has the sign of (t1 × t2) . (r1 - r2): positive when right-handed. The mean over all directions
-    is the writhe (4.18). Every two edges are looked at: time and memory grow as the square of their number.
+    is the writhe (4.18).
 
     Raises:
-        TorsadeError: edges that cannot be told apart from there, because one is seen to touch the other; or
-            input that `polygons` refuses.
+        TorsadeError: edges that cannot be told apart from there, because one is seen to touch the other or
+            end on, or three to meet in a point; or input that `polygons` refuses.
     """
-    return int(_crossing_signs(polygons(curves, closed), direction).sum())
+    return int(_crossing_signs(curves, closed, direction).sum())
 
 
 def directional_crossing_number(curves: Curves, closed: bool | Sequence[bool], direction: ArrayLike) -> int:
     """Number of crossings seen along a direction; see `directional_writhe`."""
-    return len(_crossing_signs(polygons(curves, closed), direction))
+    return len(_crossing_signs(curves, closed, direction))
 
 
 def turning_number(x: ArrayLike, closed: bool, direction: ArrayLike = (0.0, 0.0, 1.0)) -> float:
@@ -85,40 +86,13 @@ def _projected_turning(x: Floats, closed: bool, direction: ArrayLike) -> Floats:
     return np.asarray(np.arctan2(sine, cosine))
 
 
-def _crossing_signs(p: Polygons, direction: ArrayLike) -> Ints:
+def _crossing_signs(curves: Curves, closed: bool | Sequence[bool], direction: ArrayLike) -> Ints:
     """Signs of all crossings seen along a direction, shape (n_crossings,)."""
     view = _view(direction)
-    corners = [p.corners(k) @ view for k in range(len(p.curves))]
-    start, stop = np.concatenate([c[:-1] for c in corners]), np.concatenate([c[1:] for c in corners])
-    i, j = _pairs(p, [len(c) - 1 for c in corners])
-    p0, p1, q0, q1 = start[i], stop[i], start[j], stop[j]
-    e, f = p1 - p0, q1 - q0
-    # On which side of one edge the ends of the other are seen.
-    q0_side, q1_side = _cross(e, q0 - p0), _cross(e, q1 - p0)
-    p0_side, p1_side = _cross(f, p0 - q0), _cross(f, p1 - q0)
-    seen = (q0_side * q1_side <= 0) & (p0_side * p1_side <= 0)
-    clear = (q0_side * q1_side < 0) & (p0_side * p1_side < 0)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        height = (p0 + (p0_side / (p0_side - p1_side))[:, None] * e)[:, 2]
-        height -= (q0 + (q0_side / (q0_side - q1_side))[:, None] * f)[:, 2]
-    unclear = seen & ~(clear & (height != 0))
-    if unclear.any():
-        k = int(np.argmax(unclear))
-        raise TorsadeError(
-            f"edges {i[k]} and {j[k]} are seen to touch along {view[:, 2]}; look from another direction"
-        )
-    return np.asarray((np.sign(_cross(e, f)) * np.sign(height))[seen].astype(np.int64))
-
-
-def _pairs(p: Polygons, count: Sequence[int]) -> tuple[Ints, Ints]:
-    """All pairs i < j of edges that do not share a node; edges are counted through all curves."""
-    i, j = np.triu_indices(sum(count), 1)
-    owner = np.repeat(np.arange(len(count)), count)
-    first = np.cumsum([0, *count])
-    meets = (owner[i] == owner[j]) & (j == i + 1)
-    seam = np.array(p.closed)[owner[i]] & (i == first[owner[i]]) & (j == first[owner[i] + 1] - 1)
-    apart = ~(meets | seam)
-    return i[apart], j[apart]
+    try:
+        return cross_over(polylines(curves, closed, "curve"), view.T).sign
+    except Degenerate as reason:
+        raise TorsadeError(f"seen along {view[:, 2]}, {reason}; look from another direction") from reason
 
 
 def _view(direction: ArrayLike) -> Floats:

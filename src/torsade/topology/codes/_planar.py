@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from torsade.errors import TorsadeError
-from torsade.topology.diagram import Diagram
+from torsade.topology.diagram import CIRCLE, Diagram, strand_name
 
-__all__ = ["drawn", "ends_around"]
+__all__ = ["drawn", "ends_around", "standing"]
 
 
 def drawn(
@@ -42,6 +42,27 @@ def drawn(
             f"{diagram.genus}; check the order of labels, and the signs"
         )
     return diagram
+
+
+def standing(diagram: Diagram) -> Diagram:
+    """The same drawing with strand A first, running from A0 to A1, and so on, if its ends have such names.
+
+    So codes, which name ends by order and direction, give every end back its name.
+    """
+    port = {name: p for p, name in enumerate(diagram.ends, -len(diagram.ends))}
+    strand = {p: diagram.edge_strand[diagram.edge_at[p]] for p in port.values()}
+    closed = iter(s for s in diagram.starts if s >= 0)
+    starts, named = [], 0
+    for k in range(diagram.n_strands):
+        first, last = (port.get(strand_name(k) + digit) for digit in "01")
+        if first is not None and last is not None and strand[first] == strand[last]:
+            named += 2
+            starts.append(first)
+        else:
+            starts.append(next(closed, CIRCLE))
+    if named < len(port) or tuple(starts) == diagram.starts:
+        return diagram
+    return Diagram.assemble(diagram.mate, starts, diagram.ends, outer=diagram.outer)
 
 
 def ends_around(mate: Sequence[int], m: int) -> list[list[int]]:

@@ -7,7 +7,6 @@ to a change of all signs. The code fixes a prime knot up to its mirror image.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product
 
 from torsade.errors import TorsadeError, quoted
 from torsade.topology.codes._realize import realized, rows_of
@@ -62,6 +61,9 @@ def to_dt(diagram: Diagram) -> list[int] | list[list[int]]:
     Strands of a link start one edge later where that is needed for odd labels to meet even ones. All
     signs are changed if the first entry would be negative.
 
+    Raises:
+        TorsadeError: the diagram has ends, or a circle without crossings beside other strands.
+
     >>> to_dt(from_dt([4, 8, 10, 2, 12, 6]))
     [4, 8, 10, 2, 12, 6]
     """
@@ -86,13 +88,21 @@ def to_dt(diagram: Diagram) -> list[int] | list[list[int]]:
 
 
 def _started(diagram: Diagram) -> list[tuple[int, ...]]:
-    """The passages of each strand, begun so that each crossing is met at an odd and at an even label."""
+    """The passages of each strand, begun so that each crossing is met at an odd and at an even label.
+
+    A strand passes an even number of crossings, so it is begun where it starts or one edge later; where two
+    strands cross, one says it of the other.
+    """
     strands = diagram.strands
-    for shifts in product((0, 1), repeat=max(len(strands) - 1, 0)):
-        turned = [s[k:] + s[:k] for s, k in zip(strands, (0, *shifts), strict=True)]
-        parity: dict[int, int] = {}
-        for q in (q for strand in turned for q in strand):
-            parity[q] = len(parity) % 2
-        if all(parity[q] != parity[q ^ 1] if q ^ 1 in parity else parity[q] != parity[q ^ 3] for q in parity):
-            return turned
-    raise AssertionError("a planar diagram of closed curves has such labels")
+    place = {q: (k, i) for k, strand in enumerate(strands) for i, q in enumerate(strand)}
+    later: dict[int, int] = {}
+    for root in range(len(strands)):
+        todo = [] if root in later else [root]
+        later.setdefault(root, 0)
+        for k in todo:  # grows as it is read
+            for i, q in enumerate(strands[k]):
+                other, j = place.get(q ^ 1) or place[q ^ 3]
+                if other not in later:
+                    later[other] = (later[k] + i + j + 1) % 2
+                    todo.append(other)
+    return [s[later[k] :] + s[: later[k]] for k, s in enumerate(strands)]

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterable, Sequence
 
 from torsade.errors import TorsadeError, quoted
-from torsade.topology.codes._planar import drawn
+from torsade.topology.codes._planar import drawn, standing
 from torsade.topology.codes._realize import realized, rows_of
 from torsade.topology.diagram import CIRCLE, Diagram, strand_name
 
@@ -24,9 +24,12 @@ Passage = tuple[int, bool]
 def to_gauss(diagram: Diagram) -> str:
     """The signed code; crossings are numbered from 1 in the order in which they are met.
 
+    Open strands are written from end to end as `to_open_pd` does it: from A0 to A1.
+
     >>> to_gauss(from_gauss("O7+ U5+ | U7+ O5+"))
     'O1+ U2+ | U1+ O2+'
     """
+    diagram = standing(diagram)
     number = _numbers(diagram)
     return " | ".join(
         " ".join(f"{'UO'[q & 1]}{number[q >> 2]}{'+' if diagram.signs[q >> 2] > 0 else '-'}" for q in strand)
@@ -36,6 +39,7 @@ def to_gauss(diagram: Diagram) -> str:
 
 def to_unsigned_gauss(diagram: Diagram) -> list[list[int]]:
     """The unsigned code, a list for each strand: crossings from 1 on as they are met, negative where over."""
+    diagram = standing(diagram)
     number = _numbers(diagram)
     return [[-number[q >> 2] if q & 1 else number[q >> 2] for q in strand] for strand in diagram.strands]
 

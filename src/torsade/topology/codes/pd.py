@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from torsade.errors import TorsadeError
-from torsade.topology.codes._planar import drawn
+from torsade.topology.codes._planar import drawn, standing
 from torsade.topology.diagram import CIRCLE, Diagram, strand_name
 from torsade.topology.moves import add_kink
 
@@ -23,6 +23,9 @@ def to_pd(diagram: Diagram, first: int = 1) -> list[tuple[int, int, int, int]]:
     """The code of a closed diagram, with labels from `first` on, consecutive along each strand.
 
     A circle without crossings has no label, so it is given a kink; a single circle is [].
+
+    Raises:
+        TorsadeError: the diagram has ends.
 
     >>> to_pd(from_pd([(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]))
     [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]
@@ -40,7 +43,17 @@ def to_pd(diagram: Diagram, first: int = 1) -> list[tuple[int, int, int, int]]:
 
 
 def to_open_pd(diagram: Diagram) -> list[tuple[str, str, str, str]]:
-    """The code of a tangle, with labels A0, A1 ... along strand A, and so on."""
+    """The code of a tangle, with labels A0, A1 ... along strand A, and so on.
+
+    Strands are written from their end A0 to their end A1 whichever way they run: the code keeps the names of
+    ends, and `Diagram.pulled` says again which are pulled. Where ends have other names, they are not kept,
+    and strands are written as they run.
+
+    >>> from torsade.topology.tangle import integer
+    >>> to_open_pd(integer(1)) == to_open_pd(integer(1).reverse())
+    True
+    """
+    diagram = standing(diagram)
     name = [diagram.edge_name(e) for e in range(len(diagram.edges))]
     at = diagram.edge_at
     return [
@@ -107,16 +120,16 @@ def _ports(rows: list[tuple[Label, ...]]) -> dict[Label, list[int]]:
     return ports
 
 
-def _key(label: Label) -> tuple[str, int]:
-    """Integers in their order, names by letters and then by number."""
+def _key(label: Label) -> tuple[int, str, int]:
+    """Integers in their order, names by letters, A ... Z, AA ..., and then by number."""
     if isinstance(label, int):
-        return "", label
+        return 0, "", label
     found = re.fullmatch(r"(\D*)(\d+)", label)
     if not found:
         raise TorsadeError(
             f"label {label!r} of the PD code is not understood; give integers, or names such as 'A3'"
         )
-    return found[1], int(found[2])
+    return len(found[1]), found[1], int(found[2])
 
 
 def _last(mate: Sequence[int], start: int) -> int:

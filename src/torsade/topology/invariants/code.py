@@ -14,6 +14,7 @@ from functools import cached_property
 from itertools import pairwise
 
 from torsade.errors import TorsadeError
+from torsade.topology._ports import connected, faces
 
 __all__ = ["Code", "Crossing", "oriented"]
 
@@ -39,10 +40,12 @@ class Code:
 
     @property
     def n_components(self) -> int:
+        """Number of components, circles among them."""
         return len(self.components) + self.circles
 
     @property
     def writhe(self) -> int:
+        """Sum of all signs."""
         return sum(self.signs)
 
     @cached_property
@@ -57,43 +60,26 @@ class Code:
         return {edge: (begin[edge], end[edge]) for edge in begin}
 
     @cached_property
+    def mate(self) -> tuple[int, ...]:
+        """The place at the other end of the edge at each, slot s of crossing c being place 4c + s."""
+        mate = [0] * (4 * len(self.crossings))
+        for (c, slot), (d, arrival) in self.ends.values():
+            mate[4 * c + slot], mate[4 * d + arrival] = 4 * d + arrival, 4 * c + slot
+        return tuple(mate)
+
+    @cached_property
     def corners(self) -> list[list[int]]:
         """Faces: corners[c][s] is the one between slots s and s + 1 of crossing c.
 
         An edge that leaves crossing c by slot s has corner s on its left, and corner s - 1 on its right.
         """
-        other = {}
-        for one, two in self.ends.values():
-            other[one], other[two] = two, one
-        corners = [[-1] * 4 for _ in self.crossings]
-        n_faces = 0
-        for start in other:
-            if corners[start[0]][start[1]] >= 0:
-                continue
-            c, slot = start
-            while corners[c][slot] < 0:  # walk with the face on the left
-                corners[c][slot] = n_faces
-                c, arrival = other[c, slot]
-                slot = (arrival - 1) % 4
-            n_faces += 1
-        return corners
+        _, at = faces(self.mate, {})
+        return [at[p : p + 4] for p in range(0, len(at), 4)]
 
     @cached_property
     def pieces(self) -> list[list[int]]:
         """The crossings of each connected piece of the drawing."""
-        piece = list(range(len(self.crossings)))
-
-        def root(c: int) -> int:
-            while piece[c] != c:
-                piece[c] = c = piece[piece[c]]
-            return c
-
-        for (one, _), (two, _) in self.ends.values():
-            piece[root(one)] = root(two)
-        found: dict[int, list[int]] = {}
-        for c in range(len(self.crossings)):
-            found.setdefault(root(c), []).append(c)
-        return list(found.values())
+        return [[p >> 2 for p in piece[::4]] for piece in connected(self.mate, 0)]
 
     @cached_property
     def linking(self) -> tuple[tuple[int, ...], ...]:

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 
 from torsade.topology.invariants.code import Code, oriented
 
-__all__ = ["determinant", "goeritz_matrix", "inertia", "signature"]
+__all__ = ["checkerboard", "determinant", "goeritz_matrix", "inertia", "signature"]
 
 
 def signature(pd: Sequence[Sequence[int]] | Code, circles: int = 0) -> int:
@@ -48,7 +48,7 @@ def goeritz_matrix(code: Code, piece: Sequence[int]) -> tuple[list[list[int]], i
     White is the colour with fewer faces. Turned counterclockwise, the over strand sweeps corners 1 and 3;
     eta is +1 where these are black, -1 where they are white.
     """
-    dark = _checkerboard(code, piece)
+    dark = checkerboard(code, piece)
     n_dark = sum(dark.values())
     white = [face for face, is_dark in dark.items() if is_dark == (2 * n_dark < len(dark))]
     index = {face: k for k, face in enumerate(white)}
@@ -69,7 +69,7 @@ def goeritz_matrix(code: Code, piece: Sequence[int]) -> tuple[list[list[int]], i
     return [row[1:] for row in full[1:]], correction
 
 
-def _checkerboard(code: Code, piece: Sequence[int]) -> dict[int, bool]:
+def checkerboard(code: Code, piece: Sequence[int]) -> dict[int, bool]:
     """The faces of a connected piece: is each of the colour of the first one?"""
     around: dict[int, list[int]] = {}
     for c in piece:

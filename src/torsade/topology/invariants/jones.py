@@ -14,18 +14,24 @@ J. Knot Theory Ramifications 16 (2007) 243).
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from collections.abc import Sequence
+from functools import lru_cache
 
 from torsade.errors import TorsadeError
 from torsade.topology.invariants.code import Code, Crossing, oriented
+from torsade.topology.invariants.goeritz import checkerboard
 from torsade.topology.invariants.laurent import ZERO, Laurent
 
 __all__ = ["jones"]
 
-_WIDEST = 20
-"""The greatest number of loose edges: 16,796 planar ways to join them, a minute for 250 crossings."""
+_MOST_WORK = 6_000_000
+"""The greatest sum of 2^width over all steps, about two seconds: a width of 16 to 20."""
 
-_ALL_STARTS = 40  # with more crossings, only as many of them are tried as a start
+_LONG = 10_000  # bits of a polynomial after which its length counts as much as the number of them
+
+_ALL_STARTS = 40  # with more crossings, about as many of them are tried as a start
 
 Joins = tuple[tuple[int, int], ...]  # each loose edge and the one it is joined to, sorted
 
@@ -37,43 +43,51 @@ def jones(pd: Sequence[Sequence[int]] | Code, circles: int = 0) -> Laurent:
     is t + t^3 - t^4. Links with an even number of components have half-integer exponents.
 
     Raises:
-        TorsadeError: a diagram so wide that this would take minutes.
+        TorsadeError: a diagram so wide that this would take more than a few seconds.
     """
     code = oriented(pd, circles)
-    n = len(code.crossings)
-    if not n + code.circles:
-        return ZERO
+    return _of_code(code) if code.n_components else ZERO
+
+
+@lru_cache(maxsize=512)
+def _of_code(code: Code) -> Laurent:
+    """V of a diagram that is not empty."""
     # With x = A^2, every crossing brings x^3 or x^2, of which x^2 A is taken back below, and keeps powers
     # of x positive, since a crossing closes at most two loops, each -(x + 1/x). With one loop for 1, a
     # piece's bracket is a sum of one power of A for each spanning tree of its checkerboard graph
-    # (M. B. Thistlethwaite, Topology 26 (1987) 297), of which there are fewer than 2^crossings.
-    bits = n + len(code.pieces) + 2
-    bracket = Laurent.unpacked(_bracket(code, bits), bits)
-    return _normalised(bracket, n, code)
+    # (M. B. Thistlethwaite, Topology 26 (1987) 297); further pieces bring a loop each.
+    bits = sum(_log_trees(code, piece) + 1 for piece in code.pieces) + 2
+    return _normalised(Laurent.unpacked(_bracket(code, bits), bits), code)
 
 
-def _normalised(packed: Laurent, n: int, code: Code) -> Laurent:
+def _log_trees(code: Code, piece: Sequence[int]) -> int:
+    """A bound on log2 of the number of spanning trees of a checkerboard graph of a piece.
+
+    A tree is a choice of one edge at each face of one colour but the largest, towards that.
+    """
+    dark = checkerboard(code, piece)
+    size = Counter(face for c in piece for face in code.corners[c])
+    halves = ([size[face] for face in dark if dark[face] == colour] for colour in (False, True))
+    return min(math.prod(half) // max(half) for half in halves).bit_length()
+
+
+def _normalised(packed: Laurent, code: Code) -> Laurent:
     """V from the bracket as a polynomial in x = A^2, times x^(2n) A^n and the value of one loop."""
     loop = Laurent.of(-1, [-1, 0, -1])
     for _ in range(code.circles):
         packed = packed * loop
     quotient = packed.quotient(loop)
     assert quotient is not None
-    # x^(k - 2n) A^-n (-A^-3)^writhe = (-1)^writhe A^(2k - 5n - 3 writhe); t = A^-4.
-    w = code.writhe
-    sign = -1 if w % 2 else 1
-    found = ZERO
-    for i, c in enumerate(quotient.coefficients):
-        if c:
-            power_of_a = 2 * (int(quotient.lowest) + i) - 5 * n - 3 * w
-            found = found + Laurent.of(-power_of_a / 4, [sign * c])
-    return found
+    # x^(k - 2n) A^-n (-A^-3)^writhe = (-1)^writhe A^(2k - 5n - 3 writhe); t = A^-4 is x^-2.
+    n, w = len(code.crossings), code.writhe
+    lowest = -(2 * (quotient.lowest + quotient.span) - 5 * n - 3 * w) / 4
+    return Laurent.of(lowest, [-c if w % 2 else c for c in quotient.coefficients[::-2]])
 
 
 def _bracket(code: Code, bits: int) -> int:
     """The sum over states, as a polynomial in x = A^2 at 2^bits: every loop counts, no division by one."""
     states: dict[Joins, int] = {(): 1}
-    for c in _order(code.crossings):
+    for c in _order(code.crossings, bits):
         p, q, r, s = code.crossings[c]
         grown: dict[Joins, int] = {}
         for joins, value in states.items():
@@ -99,41 +113,44 @@ def _join(mate: dict[int, int], p: int, q: int) -> bool:
     return False
 
 
-def _order(crossings: tuple[Crossing, ...]) -> list[int]:
-    """The crossings in an order that keeps the sum of 2^width small, found greedily from several starts."""
+def _order(crossings: tuple[Crossing, ...], bits: int) -> list[int]:
+    """The crossings in an order that keeps the work small, found greedily from several starts."""
     n = len(crossings)
     at: dict[int, list[int]] = {}
     for c, edges in enumerate(crossings):
         for edge in edges:
             at.setdefault(edge, []).append(c)
-    found = (_greedy(crossings, at, start) for start in range(0, n, 1 + n // _ALL_STARTS))
-    _, widest, order = min(found, default=(0, 0, []))
-    if widest > _WIDEST:
+    found = (_greedy(crossings, at, start, bits) for start in range(0, n, 1 + n // _ALL_STARTS))
+    work, widest, order = min(found, default=(0, 0, []))
+    if work > _MOST_WORK:
         raise TorsadeError(
-            f"a diagram of {n} crossings is {widest} strands wide, more than the {_WIDEST} that the Jones "
-            "polynomial is computed for; simplify it first"
+            f"a diagram of {n} crossings, {widest} strands wide, is more than the Jones polynomial is "
+            "computed for; simplify it first"
         )
     return order
 
 
 def _greedy(
-    crossings: tuple[Crossing, ...], at: dict[int, list[int]], start: int
+    crossings: tuple[Crossing, ...], at: dict[int, list[int]], start: int, bits: int
 ) -> tuple[int, int, list[int]]:
-    """Sum of 2^width, greatest width, and the order that always adds the crossing held most already."""
+    """Work, greatest width, and the order that always adds the crossing held most already."""
     loose_at = [0] * len(crossings)
     loose: set[int] = set()
     left = set(range(len(crossings)))
+    touched: set[int] = set()
     order: list[int] = []
-    cost, widest, c = 0, 0, start
+    work, widest, c = 0, 0, start
     while True:
         order.append(c)
         left.discard(c)
         for edge in crossings[c]:
             loose ^= {edge}
+            touched.update(at[edge])
             for other in at[edge]:
                 loose_at[other] += 1
-        cost += 1 << len(loose)
+        touched &= left
+        work += (_LONG + bits * len(order) << len(loose)) // _LONG
         widest = max(widest, len(loose))
         if not left:
-            return cost, widest, order
-        c = max(left, key=loose_at.__getitem__)
+            return work, widest, order
+        c = max(touched or left, key=loose_at.__getitem__)
