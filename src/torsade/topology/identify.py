@@ -56,6 +56,10 @@ MOST_NAMES = 64
 """Of mirror images that a code leaves open, as many are listed."""
 
 
+MORE = 5
+"""How many times as long fewer crossings are looked for where a single name is only not certain."""
+
+
 @dataclass(frozen=True, slots=True)
 class Identity:
     """What a diagram was found to be.
@@ -110,6 +114,11 @@ def identify(diagram: Diagram, patience: int = 100, handed: bool = True) -> Iden
     if found.certain and not found.reason:
         return found
     fewest = simplify(simpler, patience)
+    found = identify_pd(to_pd(fewest.without_circles()), fewest.circles)
+    if found.certain or len(found.names) != 1:
+        return found
+    # One crossing more than the table goes to is all that is often in the way of certainty.
+    fewest = simplify(fewest, MORE * patience)
     return identify_pd(to_pd(fewest.without_circles()), fewest.circles)
 
 
