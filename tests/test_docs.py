@@ -50,7 +50,7 @@ def test_the_python_example_runs(
 
 def test_commands_are_found() -> None:
     """The tests below have something to test."""
-    assert {line.split()[1] for line in commands()} == {"run", "topology", "convert", "tight"}
+    assert {line.split()[1] for line in commands()} == {"run", "topology", "convert", "tight", "knots"}
     assert len(commands()) >= 5
 
 
@@ -74,8 +74,8 @@ def test_a_conversion_shown_is_done(line: str, tmp_path: Path) -> None:
     assert (tmp_path / out).stat().st_size > 1000
 
 
-@pytest.mark.parametrize("line", [line for line in commands() if line.split()[1] == "tight"])
-def test_a_knot_shown_becomes_tight(line: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("line", [line for line in commands() if line.split()[1] in ("tight", "knots")])
+def test_a_knot_shown_is_made(line: str, tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-m", *shlex.split(line)], capture_output=True, text=True, check=False, cwd=tmp_path
     )

@@ -76,7 +76,10 @@ def test_a_specification_is_frozen_and_survives_json() -> None:
         ({"knot": "reef", "force": True}, "force True is not a number"),
         ({"knot": "reef", "force": 10**400}, "force a whole number of 401 digits is not a finite number"),
         ({"knot": "sqare knot"}, "nothing is called 'sqare knot'; did you mean 'square knot'?"),
-        ({"knot": "3_1"}, "'3_1' is no bend of two strands, but a closed (Knot 3_1: trefoil) without ends; give"),
+        (
+            {"knot": "3_1"},
+            "'3_1' is no bend of two strands, but a closed (Knot 3_1: trefoil) without ends; give",
+        ),
         ({"knot": "reef", "diameter": "1 mm"}, "give 'radius', half of it"),
         ({"knot": "reef", "length": "1 m"}, "a built-in knot takes 'lead'"),
         ({"knot": "reef", "frames": 1.5}, "frames is 1.5; give a whole number"),

@@ -20,7 +20,9 @@ from torsade.topology.measures import linking, writhe
 def pushed_off(x: Floats, d: Floats, by: float) -> Floats:
     """A closed curve pushed along its directors: two nodes for each edge, close to its ends."""
     e = curve.edge_vectors(x, closed=True)
-    near = min(0.01, 0.1 * by / np.linalg.norm(e, axis=1).max())  # or the corner cut would be on the other side
+    near = min(
+        0.01, 0.1 * by / np.linalg.norm(e, axis=1).max()
+    )  # or the corner cut would be on the other side
     ends = [x + share * e + by * d for share in (near, 1 - near)]
     return np.stack(ends, axis=1).reshape(-1, 3)
 
