@@ -76,7 +76,7 @@ BEND = ("run", "prison-escape")
         ((*BEND, "--spec", "none.toml"), "there is no file 'none.toml'"),
         (BEND, "nothing to pull is given"),
         (("run", "prison"), "did you mean 'prison-escape'?"),
-        (("run", "tighten", "--knot", "trefoil"), "'trefoil' is no knot in one strand, but a closed"),
+        (("run", "tighten", "--knot", "trefoil"), "'trefoil' is a closed knot, and one strand"),
         (("run", "tighten", "--knot", "reef"), "give torsade run prison-escape --knot reef"),
         ((*BEND, "--knot", "overhand"), "give torsade run tighten --knot overhand"),
         (("run", "reef.toml"), "give a file with --spec reef.toml"),

@@ -78,7 +78,7 @@ def test_a_specification_is_frozen_and_survives_json() -> None:
         ({"knot": "sqare knot"}, "nothing is called 'sqare knot'; did you mean 'square knot'?"),
         (
             {"knot": "3_1"},
-            "'3_1' is no bend of two strands, but a closed (Knot 3_1: trefoil) without ends; give",
+            "'3_1' is a closed knot, and a bend has two strands with ends; choose",
         ),
         ({"knot": "reef", "diameter": "1 mm"}, "give 'radius', half of it"),
         ({"knot": "reef", "length": "1 m"}, "a built-in knot takes 'lead'"),
@@ -109,7 +109,7 @@ def test_bad_fields_are_refused_in_one_sentence(fields: dict[str, Any], says: st
 
 
 def test_tighten_says_what_it_does_not_have() -> None:
-    with pytest.raises(ts.TorsadeError, match=r"'trefoil' is no knot in one strand, .*; give 'open 3_1'"):
+    with pytest.raises(ts.TorsadeError, match=r"'trefoil' is a closed knot, .*; give 'open 3_1'"):
         Tighten(knot="trefoil")
     with pytest.raises(ts.TorsadeError, match='nothing to pull is given; give a knot such as "overhand", or'):
         Tighten()

@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import lru_cache
 from types import MappingProxyType
 
-from torsade.errors import TorsadeError, quoted
+from torsade.errors import TorsadeError, counted, quoted
 from torsade.knots.entries import KINDS, Entry, entries, strand_knot, suture, torus
 from torsade.topology.codes import code_kind, from_text
 from torsade.topology.diagram import Diagram
@@ -130,10 +130,10 @@ def known_bend(name: str) -> Entry:
     entry = interpret(name)
     if len(entry.diagram.ends) == 4:
         return entry
-    advice = f"give one of {', '.join(bend_names())}, a suture such as 5,-3, or a centerline of your own"
+    advice = "choose one that torsade knots list --kind bend shows, such as zeppelin"
     if len(entry.diagram.ends) == 2:
-        advice = f"give torsade run tighten --knot {_word(name)}, or one of {', '.join(bend_names())}"
-    raise TorsadeError(f"{quoted(name)} is no bend of two strands, but {_what(entry)}; {advice}")
+        advice = f"give torsade run tighten --knot {_word(name)}, or a bend such as zeppelin"
+    raise TorsadeError(f"{quoted(name)} is {_what(entry)}, and a bend has two strands with ends; {advice}")
 
 
 def known_strand(name: str) -> Entry:
@@ -145,13 +145,12 @@ def known_strand(name: str) -> Entry:
     entry = interpret(name)
     if len(entry.diagram.ends) == 2:
         return entry
-    known = ", ".join(found.name for found in search(kind="strand"))
-    advice = f"give {known}, or a closed knot cut open such as 'open 5_2'"
+    advice = "choose one that torsade knots list --kind strand shows, such as overhand"
     if len(entry.diagram.ends) == 4:
         advice = f"give torsade run prison-escape --knot {_word(name)}"
     elif entry.kind == "closed":
-        advice = f"give 'open {entry.name}' for that knot cut open"
-    raise TorsadeError(f"{quoted(name)} is no knot in one strand, but {_what(entry)}; {advice}")
+        advice = f"give 'open {entry.name}' for it cut open"
+    raise TorsadeError(f"{quoted(name)} is {_what(entry)}, and one strand with two ends is wanted; {advice}")
 
 
 def _word(name: str) -> str:
@@ -160,8 +159,16 @@ def _word(name: str) -> str:
 
 
 def _what(entry: Entry) -> str:
-    n = len(entry.diagram.ends) // 2
-    return f"a {entry.kind} ({entry.title}) " + (f"of {n} open strands" if n else "without ends")
+    """What an entry is, with its article."""
+    words = {
+        "closed": "a closed knot",
+        "strand": "a knot in one strand",
+        "variant": "a bend",
+        "torus": "closed",
+    }
+    if entry.kind in KINDS:
+        return words.get(entry.kind, f"a {entry.kind}")
+    return f"a {entry.kind} of {counted(len(entry.diagram.ends) // 2, 'open strand')}"
 
 
 @lru_cache(maxsize=1)
