@@ -34,7 +34,19 @@ def numbers(found: Any) -> list[float]:
     return [float(found)] if isinstance(found, int | float) else []
 
 
-SCRIPTS = ("step", "kernels", "mobility", "start", "bends", "convergence", "writhe", "topology", "tight")
+SCRIPTS = (
+    "step",
+    "kernels",
+    "mobility",
+    "start",
+    "bends",
+    "convergence",
+    "writhe",
+    "topology",
+    "tight",
+    "building",
+    "variants",
+)
 
 
 @pytest.mark.parametrize("name", SCRIPTS)

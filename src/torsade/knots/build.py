@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
@@ -149,14 +149,29 @@ def _built(
 ) -> BuiltKnot:
     """`build` of arguments that are checked; lengths in radii. The outer faces are told apart by `outer`."""
     arguments = h, total, lead, tail, spacing, pulled
-    try:
-        return _made(standing(untwisted(diagram)), *arguments)
-    except TorsadeError:
-        simpler = simplify(diagram)
-        if simpler.n_crossings == diagram.n_crossings:
-            raise
-        # What a drawing shows small may not get apart; a drawing with fewer crossings is easier.
-        return _made(standing(untwisted(simpler)), *arguments)
+    refused: TorsadeError | None = None
+    for drawing in _drawings(diagram):
+        try:
+            return _made(standing(untwisted(drawing)), *arguments)
+        except _NotApartError as error:
+            refused = refused or error
+    assert refused is not None  # the first drawing is the diagram itself
+    raise refused
+
+
+class _NotApartError(TorsadeError):
+    """What a drawing shows small has not got apart; another drawing of the same may."""
+
+
+def _drawings(diagram: Diagram) -> Iterator[Diagram]:
+    """The diagram, one with fewer crossings, and the diagram with other faces outside, longest first."""
+    yield diagram
+    simpler = simplify(diagram)
+    if simpler.n_crossings < diagram.n_crossings:
+        yield simpler
+    if not diagram.ends and len(diagram.pieces) == 1:
+        for face in sorted(diagram.faces, key=len, reverse=True):
+            yield replace(diagram, outer=(face[0],))
 
 
 def _made(
@@ -178,7 +193,7 @@ def _made(
     else:
         strands, gap, bend = make.with_longer_ends(total, h)
     if not reads_as(project(strands, closed).diagram, usual(drawn)):
-        raise TorsadeError("the curve made of this diagram is another knot; simplify the diagram first")
+        raise _NotApartError("the curve made of this diagram is another knot; simplify the diagram first")
     return BuiltKnot(tuple(h * x for x in strands), closed, drawn, pulled, h, h * gap, bend)
 
 
@@ -218,7 +233,7 @@ class _Maker:
             factor *= lacking * (1 + 1e-3)
             if lacking > _FAILED:
                 break
-        raise TorsadeError(
+        raise _NotApartError(
             f"the curve of this diagram has strands {gap:.3g} radii apart and h kappa {bend:.3g}, and "
             "enlarging does not help; simplify the diagram, or give longer leads"
         )

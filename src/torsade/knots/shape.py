@@ -25,7 +25,8 @@ _LAWS = Laws(tension=1.0, stiffness=1.0, hard_stiffness=100.0, springs=20.0, dis
 _LEVELS = (
     (_LAWS._replace(tension=0.0), None, 150),  # room for what is drawn small
     (_LAWS, None, 2000),
-    (_LAWS, 0.5, 1000),
+    (_LAWS, 0.7, 2500),
+    (_LAWS, 0.5, 1500),
 )
 """Laws, edges of nodes newly set [radii], and steps."""
 
@@ -113,7 +114,7 @@ def pieces(diagram: Diagram) -> list[list[int]]:
 
 
 def _spread(diagram: Diagram, strands: list[int], angles: dict[str, float]) -> list[FloatArray]:
-    """One piece, drawn, lifted and spread on two levels; sampled finely."""
+    """One piece, drawn, lifted and spread on levels ever finer; sampled finely."""
     x = lifted(diagram, strands, angles)
     closed = [not diagram.is_open(k) for k in strands]
     seen = project(x, closed).diagram

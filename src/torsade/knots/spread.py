@@ -15,7 +15,7 @@ it to the edges that share no node with it. While a node moves straight, a point
 than the farther of the edge's nodes. So two edges that share no node approach each other by less than their
 distance, and do not meet. Neighbours on a strand could meet only by folding back onto each other; then an end
 of the shorter lies on the longer, and the next edge at that end, which shares no node with the longer, meets
-it: that is excluded, too.
+it: that is excluded, too. Nodes stop where edges are `NEAREST` apart, so that round-off does not matter.
 """
 
 from __future__ import annotations
@@ -34,6 +34,8 @@ from torsade.rod.neighbours import near_points
 LARGEST_MOVE = 0.6  # [radii]
 SHARE = 0.45
 """Of its distance to others that an edge may move in a step; below a half."""
+NEAREST = 1e-6
+"""Edges come no nearer than this [radii]: there round-off is far below their distance."""
 SKIN = 1.0  # pairs are listed this much farther than they act [radii]
 MEMORY = 0.98
 """Most that is kept of the last step in the next one."""
@@ -135,7 +137,7 @@ def room_to_move(s: Strands, x: Floats, pairs: Ints, room: Floats) -> None:
             d = 0.5 * (x[i, c] + x[i1, c] - x[j, c] - x[j1, c])
             squared += d * d
         if squared < reach * reach:
-            move = SHARE * segment_distance(x[i], x[i1], x[j], x[j1])
+            move = SHARE * max(0.0, segment_distance(x[i], x[i1], x[j], x[j1]) - NEAREST)
             room[i] = min(room[i], move)
             room[i1] = min(room[i1], move)
             room[j] = min(room[j], move)
