@@ -123,7 +123,7 @@ def test_readme_has_two_commands_for_a_fresh_machine() -> None:
     found = re.findall(r"^(?:python3 -m venv|\.venv/bin/pip) .*$", text, re.M)
     assert len(found) == 2
     assert found[0].endswith("torsade demo")
-    assert found[1].endswith("pytest")
+    assert found[1].endswith("pytest -n auto")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
