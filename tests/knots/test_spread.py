@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from torsade.knots.band import solve_band
 from torsade.knots.lift import lifted
-from torsade.knots.spread import LARGEST_MOVE, Laws, Strands, room_to_move, spread
+from torsade.knots.spread import LARGEST_MOVE, NEAREST, Laws, Strands, room_to_move, spread
 from torsade.segments import segment_distance
 from torsade.topology import named_diagram
 from torsade.topology.measures import linking
@@ -84,7 +84,7 @@ def test_room_is_less_than_half_of_every_distance() -> None:
         for k in range(2):
             np.minimum.at(least, two[:, k], apart)
     assert np.all(room < least / 2)
-    np.testing.assert_allclose(room, np.minimum(LARGEST_MOVE, 0.45 * least), rtol=1e-9)
+    np.testing.assert_allclose(room, np.minimum(LARGEST_MOVE, 0.45 * (least - NEAREST)), rtol=1e-9)
 
 
 def test_linking_numbers_stay() -> None:
