@@ -14,6 +14,8 @@ from torsade import curve
 from torsade.errors import TorsadeError
 from torsade.knots import PULLS, BuiltKnot, bend_diagram, build, suture_diagram
 from torsade.knots.bends import bends
+from torsade.knots.build import _built
+from torsade.knots.shape import shapes
 from torsade.topology import from_text, identify, identify_curves, linking, named_diagram, project
 from torsade.topology.codes import from_pd, to_pd
 from torsade.topology.diagram import Diagram
@@ -279,3 +281,14 @@ def test_knots_in_one_strand(name: str) -> None:
 
 def test_the_same_fiber_is_made_once() -> None:
     assert build(named_diagram("3_1"), H) is build(named_diagram("3_1"), H)
+
+
+@pytest.mark.parametrize("diagram", [named_diagram("8_19"), bend_diagram("carrick")], ids=["8_19", "carrick"])
+def test_building_repeats_to_the_bit(diagram: Diagram) -> None:
+    first = build(diagram, H)
+    _built.cache_clear()
+    shapes.cache_clear()
+    again = build(diagram, H)
+    assert again is not first
+    for x, y in zip(first.strands, again.strands, strict=True):
+        np.testing.assert_array_equal(x, y)
