@@ -56,6 +56,15 @@ CONVERT_EXAMPLES = """Examples:
 torsade convert scan.xyz knot.csv --length-unit mm --smooth "0.1 mm" --spacing "0.1 mm"
 
 torsade convert knot.csv knot.vtk"""
+
+FIGURE_EXAMPLES = """Examples:
+
+torsade figure
+
+torsade figure 4-5
+
+torsade figure 4-1 --out figures --preset standard"""
+
 TIGHT_EXAMPLES = """Examples:
 
 torsade tight 3_1
@@ -89,6 +98,7 @@ def build(arguments: list[str]) -> App:
     app.command(_convert, name="convert", help_epilogue=CONVERT_EXAMPLES, version_flags=[])
     app.command(knots_app())
     app.command(_tight, name="tight", help_epilogue=TIGHT_EXAMPLES, version_flags=[])
+    app.command(_figure, name="figure", help_epilogue=FIGURE_EXAMPLES, version_flags=[])
     run = App(
         name="run",
         help="Run an experiment: prison-escape (pull a bend) or tighten (pull a knot in one strand).",
@@ -273,6 +283,47 @@ def _tight(
     from torsade.cli.tight import tight
 
     return tight(given, ropelength, radius, nodes, tries, out, picture, json)
+
+
+def _figure(
+    number: Annotated[
+        str | None,
+        Parameter(
+            name="NUMBER", help="Number of the figure in the thesis, such as 4-5; without it they are listed."
+        ),
+    ] = None,
+    /,
+    *,
+    out: Annotated[
+        str,
+        Parameter(
+            help="Folder for the picture, the tables and, in runs/, the results they come from, which other "
+            "figures use too [default: figures]."
+        ),
+    ] = "figures",
+    preset: Annotated[
+        str, Parameter(help="Model: standard, published, or both, side by side [default: both].")
+    ] = "both",
+    quick: Annotated[
+        bool, Parameter(help="Short and coarse runs, for a look: not the numbers of the docs.")
+    ] = False,
+    fresh: Annotated[
+        bool, Parameter(help="Run everything anew; by default stored results are used.")
+    ] = False,
+    workers: Annotated[str | None, Parameter(help="Runs at a time [default: the number of cores].")] = None,
+    json: Annotated[bool, Parameter(help=OPTIONS["json"][1])] = False,
+) -> int:
+    """Make a figure of the thesis from runs of this package: a picture, and tables of its numbers as CSV.
+
+    Runs that are stored already are not run again.
+    """
+    from torsade.cli import figure
+
+    return (
+        figure.show_all(json)
+        if number is None
+        else figure.draw(number, out, preset, quick, fresh, workers, json)
+    )
 
 
 def _protocol_command(spec: type[Spec]) -> Callable[..., int]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -12,7 +12,7 @@ from rich.text import Text
 if TYPE_CHECKING:
     from torsade.results import Result
 
-__all__ = ["print_file", "print_rows", "print_table"]
+__all__ = ["print_file", "print_grid", "print_rows", "print_table"]
 
 WIDTH = 24
 """Of the first column: the longest name in it."""
@@ -38,6 +38,22 @@ def print_rows(rows: Iterable[tuple[str, str]]) -> None:
     for name, value in rows:
         table.add_row(name, Text(value))
     Console(highlight=False).print(table)
+
+
+def print_grid(columns: Sequence[str], rows: Iterable[Sequence[float | int | str | bool | None]]) -> None:
+    """Print a table of numbers under its headings; what is not known is left out."""
+    table = Table(box=None, pad_edge=False)
+    for name in columns:
+        table.add_column(name, overflow="fold")
+    for row in rows:
+        table.add_row(*(_cell(cell) for cell in row))
+    Console(highlight=False).print(table)
+
+
+def _cell(cell: float | int | str | bool | None) -> str:
+    if cell is None or cell != cell:
+        return ""
+    return f"{cell:.4g}" if isinstance(cell, float) else str(cell)
 
 
 def _asked(result: Result) -> Iterator[tuple[str, str]]:

@@ -1,0 +1,144 @@
+"""Runs that figures share: made once, two or more at a time, kept in a folder and found there again."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import multiprocessing
+import os
+import re
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from functools import lru_cache, partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from torsade import places
+from torsade.errors import TorsadeError, counted, reason_of
+from torsade.results import Result
+
+if TYPE_CHECKING:
+    from torsade.protocols.base import Progress, Spec
+
+__all__ = ["make_folder", "results", "run_path"]
+
+DRAWING = ("view", "figures", "cli")
+"""Parts of the package that no number depends on."""
+
+
+def results(
+    specs: Mapping[str, Spec],
+    folder: Path,
+    *,
+    workers: int | None = None,
+    fresh: bool = False,
+    progress: Progress | None = None,
+) -> dict[str, Result]:
+    """The results of specifications, by label: read where the folder has them, run where it has not.
+
+    A run that was interrupted is gone on with. Results do not depend on the number of workers.
+
+    Parameters
+    ----------
+    specs : what to run, by label
+    folder : where results are kept, made when missing
+    workers : processes at a time; by default as many as there are cores
+    fresh : run all anew
+    progress : called as runs come to their end
+
+    Raises
+    ------
+    TorsadeError
+        When the folder cannot be written, or a run fails; what is complete by then is kept.
+    """
+    tell = progress or (lambda share, note: None)
+    make_folder(folder)
+    paths = {label: run_path(label, spec, folder) for label, spec in specs.items()}
+    missing = {label: spec for label, spec in specs.items() if fresh or not _is_complete(paths[label])}
+    done = len(specs) - len(missing)
+    tell(done / max(1, len(specs)), _note(len(missing)))
+    for label in _run_all(missing, paths, fresh, workers or os.cpu_count() or 1):
+        done += 1
+        tell(done / len(specs), label)
+    return {label: Result.open(path) for label, path in paths.items()}
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder where it is missing.
+
+    Raises
+    ------
+    TorsadeError
+        When that cannot be done.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise TorsadeError(
+            f"cannot make the folder {str(folder)!r} ({reason_of(error)}); give another --out"
+        ) from None
+
+
+def run_path(label: str, spec: Spec, folder: Path) -> Path:
+    """Where the run of a specification is kept: its label, and a hash of all that decides the result."""
+    asked = json.dumps(spec.stored() | {"h": spec.h}, sort_keys=True)
+    key = hashlib.sha256((asked + _sources()).encode()).hexdigest()[:16]
+    return folder / f"{re.sub(r'[^A-Za-z0-9.]+', '-', label).strip('-')}-{key}.zarr"
+
+
+@lru_cache(maxsize=1)
+def _sources() -> str:
+    """A hash of the sources that results come from: another version of them gives other runs."""
+    package = Path(__file__).parents[1]
+    digest = hashlib.sha256()
+    for path in sorted(package.rglob("*")):
+        parts = path.relative_to(package).parts
+        if path.suffix in (".py", ".json") and parts[0] not in DRAWING:
+            digest.update("/".join(parts).encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()
+
+
+def _is_complete(path: Path) -> bool:
+    return (places.attributes(path) or {}).get("status") == "complete"
+
+
+def _note(missing: int) -> str:
+    return f"{counted(missing, 'run')} to do" if missing else "all runs are stored"
+
+
+def _run_all(
+    specs: Mapping[str, Spec], paths: Mapping[str, Path], fresh: bool, workers: int
+) -> Iterator[str]:
+    """Run all, and name each when it is done; the first failure is raised when the others are through."""
+    failures: list[str] = []
+    for label, outcome in _outcomes(specs, paths, fresh, workers):
+        try:
+            outcome()
+        except TorsadeError as error:
+            failures.append(f"{label}: {error}")
+        yield label
+    if failures:
+        raise TorsadeError("; ".join(failures))
+
+
+def _outcomes(
+    specs: Mapping[str, Spec], paths: Mapping[str, Path], fresh: bool, workers: int
+) -> Iterator[tuple[str, Callable[[], None]]]:
+    """Every run with what tells how it ended, in this process or as processes come to their end."""
+    if min(workers, len(specs)) <= 1:
+        for label, spec in specs.items():
+            yield label, partial(_run, spec, paths[label], fresh)
+        return
+    # Fresh interpreters: forking one that has threads, as compiled kernels do, can hang.
+    with ProcessPoolExecutor(min(workers, len(specs)), multiprocessing.get_context("spawn")) as pool:
+        waiting = {pool.submit(_run, spec, paths[label], fresh): label for label, spec in specs.items()}
+        try:
+            for future in as_completed(waiting):
+                yield waiting[future], future.result
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+def _run(spec: Spec, path: Path, fresh: bool) -> None:
+    """One run, on disk."""
+    spec.run(out=path, resume=not fresh, overwrite=fresh)
