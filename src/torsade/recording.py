@@ -48,10 +48,14 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "dissipation": (("time",), "J", "energy lost to drag since the start"),
     "position": (("time", "node", "space"), "m", "node positions"),
     "log_strain": (("time", "node"), "", "log(1 + sqrt(eps:eps)) on the surface"),
+    "velocity": (("time", "node", "space"), "m/s", "node velocities; zero at the start"),
+    "self_torque": (("time", "edge"), "N", "torque by collision drag per rest length, without own spin"),
+    "rotation_rate": (("time",), "rad/s", "rate at which the knot turns about the pull"),
+    "rotation": (("time",), "rad", "by how much the knot has turned about the pull"),
 }
 """Dimensions, SI unit and meaning of every recorded variable."""
 
-SINGLE_PRECISION = ("position", "log_strain")
+SINGLE_PRECISION = ("position", "log_strain", "velocity", "self_torque")
 
 SAMPLE = "sample_"
 """Beginning of the names of samples."""
@@ -82,6 +86,7 @@ class Recording:
             "sample": samples,
             "fiber": len(assembly.closed),
             "node": len(assembly.node_length),
+            "edge": len(assembly.edges),
             "space": 3,
         }
         self._arrays: dict[str, NDArray[Any]] = {

@@ -1,7 +1,8 @@
 """Results: labelled arrays with what was asked and what came of it, in zarr folders that anyone can open.
 
 A result is an `xarray.Dataset` in SI units. Histories have the dimension `time`; `twist` also `fiber`.
-Frames are `position (time, node, space)` [m] and `log_strain (time, node)`, stored in single precision;
+Frames are `position` [m] and `velocity` [m/s] `(time, node, space)`, `log_strain (time, node)` and
+`self_torque (time, edge)` [N], stored in single precision; edges are counted through all fibers.
 Samples, `sample_time (sample)` [s] and `sample_separation (sample)` [m], are finer in time and do not
 depend on frames: what a run concludes comes from them. `node_start (fiber_bound)` says where each fiber
 begins, `closed (fiber)` which are closed.

@@ -173,7 +173,7 @@ def test_the_wrong_number_of_strands(bends: Path, protocol: type[Any], file: str
     ("fields", "says"),
     [
         ({"lead": "2 m", "spacing": "0.02 mm"}, "more than the 100000 that a run can move"),
-        ({"frames": 1_000_000}, "1000001 frames of 338 nodes take 5.4 GB; give at most 739643 frames"),
+        ({"frames": 1_000_000}, "1000001 frames of 338 nodes take 10.8 GB; give at most 369821 frames"),
     ],
 )
 def test_runs_that_memory_cannot_hold(fields: dict[str, Any], says: str) -> None:

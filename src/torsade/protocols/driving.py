@@ -60,6 +60,8 @@ COMMON = (
     "dissipation",
     "position",
     "log_strain",
+    "velocity",
+    "self_torque",
 )
 """What every protocol records."""
 
@@ -127,6 +129,7 @@ def _begin(
         "start": hashlib.sha256(state.x.tobytes()).hexdigest(),
     } | dict(experiment.about)
     own = experiment.measure(state)
+    own |= dict.fromkeys(experiment.observed, 0.0)
     first = {name: np.array([value]) for name, value in ({"time": 0.0} | own).items()}
     samples = [SAMPLE + name for name in ("time", *experiment.sampled)] if experiment.sampled else []
     return Recording.begin(
@@ -291,5 +294,7 @@ def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, f
         "dissipation": motion.dissipation,
         "position": state.x,
         "log_strain": observables.log_strain(assembly, state, radius),
+        "velocity": state.v,
+        "self_torque": now.self_torque,
     }
-    return common | experiment.measure(state)
+    return common | experiment.measure(state) | experiment.observe(state, now)

@@ -18,7 +18,7 @@ LARGEST_COUNT = 100_000
 """Most nodes of a run: a step then takes about a second."""
 
 LARGEST_RESULT = 4_000_000_000
-"""Most that positions and strains of all frames may take in memory [bytes]."""
+"""Most that positions, velocities, strains and torques of all frames may take in memory [bytes]."""
 
 
 def open_strands(path: str, spec: Spec, strands: int, wanted: str) -> Centerline:
@@ -76,7 +76,7 @@ def check_built(shape: Centerline, radius: float) -> Centerline:
 
 def check_frames(frames: int, nodes: int) -> None:
     """Refuse more frames than memory holds."""
-    size = 16 * nodes
+    size = 32 * nodes
     if frames * size > LARGEST_RESULT:
         raise TorsadeError(
             f"{frames} frames of {nodes} nodes take {frames * size / 1e9:.1f} GB; give at most "
