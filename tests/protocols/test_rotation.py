@@ -30,7 +30,7 @@ def total(result: ts.Result) -> np.ndarray:
 
 
 def test_the_mirror_image_turns_the_other_way() -> None:
-    """The thief, which turns most; to the tolerance of the steps, for the mirror image is not stepped alike."""
+    """The thief, which turns most; to the tolerance of the steps, since those of the two differ."""
     one, other = run("reef", "A1B0"), run("mirror reef", "A1B0")
     x, y = (result.dataset["position"].values for result in (one, other))
     np.testing.assert_allclose(y, x * [1, 1, -1], atol=0.05 * one.dataset.attrs["radius"])
