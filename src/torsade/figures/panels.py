@@ -23,6 +23,7 @@ __all__ = [
     "PRESET_COLOURS",
     "STYLE",
     "agreed",
+    "counted",
     "knot_picture",
     "letter",
     "name_of",
@@ -36,9 +37,9 @@ MUTED = "#7c858d"
 PRESET_COLOURS: Mapping[str, str] = {"standard": "#2f6fa8", "published": "#c9543f"}
 
 
-def new_figure(width: float, height: float) -> Any:
-    """An empty figure of that size [inches], white."""
-    return require("matplotlib.figure").Figure(figsize=(width, height), layout="constrained")
+def new_figure(width: float, height: float, layout: str = "constrained") -> Any:
+    """An empty figure of that size [inches], whose panels are laid out by matplotlib or by hand ("none")."""
+    return require("matplotlib.figure").Figure(figsize=(width, height), layout=layout)
 
 
 def name_of(knot: str) -> str:
@@ -95,3 +96,8 @@ def strain_bar(figure: Any, axes: Any, **options: Any) -> None:
     bar = figure.colorbar(scale, ax=axes, ticks=[0, 0.35, 0.7], **options)
     bar.set_label("logarithmic strain")
     bar.outline.set_visible(False)
+
+
+def counted(row: Mapping[str, Any]) -> str:
+    """(N, tau, Gamma) of a row of a table as it is printed."""
+    return f"({row['N']}, {row['tau']:.3g}, {row['Gamma']:.3g})"
