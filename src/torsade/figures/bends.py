@@ -34,6 +34,7 @@ __all__ = [
     "counts",
     "distinct",
     "drawn",
+    "family",
     "gamma_range",
     "kinds",
     "label_of",
@@ -51,6 +52,8 @@ QUICK = ("reef", "thief", "granny", "grief", "carrick14")
 """Bends of a quick look, pulled for `QUICK_DURATION` [s]."""
 
 QUICK_DURATION, QUICK_FRAMES = 0.02, 4
+
+PULLED_OTHERWISE: Mapping[str, str] = {"thief": "reef", "grief": "granny"}
 
 DRAWINGS = 200
 """Drawings looked at for the range of Gamma; with 2000, ten times slower, no range of the 27 is wider."""
@@ -175,17 +178,26 @@ def table(results: Mapping[str, Result], choice: Choice) -> Table:
     return Table(COLUMNS, rows)
 
 
+def family(knot: str) -> str:
+    """The knot that a bend is, however it is pulled: "hunter" of hunter13 and of hunter14."""
+    return PULLED_OTHERWISE.get(knot, knot.rstrip("0123456789").removesuffix("_min"))
+
+
 def distinct(table: Table, preset: Preset) -> dict[str, dict[str, list[Any]]]:
     """Columns of a table like `table`, of one preset, each bend once though some have several names.
 
-    First those of the thesis alone, then, where there are others, all.
+    "thesis": its variants. "phase diagram": those of them that its figure 4-5G shows, pulled by their first
+    strand's end 1 and the second's 3 or 4. "all": further ones too. What would repeat another is left out.
     """
     rows = [row for row in table.rows if row[table.columns.index("preset")] == preset]
-    at = table.columns.index("knot")
+    at, c_f = table.columns.index("knot"), table.columns.index("c_f")
     same = kinds(knot for knot in (*variants(), *FURTHER) if knot in {row[at] for row in rows})
-    single = [row for row in rows if same[str(row[at])] == row[at] and row[table.columns.index("c_f")]]
+    single = [row for row in rows if same[str(row[at])] == row[at] and row[c_f] is not None]
     thesis = [row for row in single if row[at] in variants()]
-    found = {"thesis": thesis} | ({"all": single} if len(single) > len(thesis) else {})
+    shown = [row for row in thesis if str(row[at])[-2:] not in ("23", "24")]
+    found = {"thesis": thesis}
+    found |= {"phase diagram": shown} if len(shown) < len(thesis) else {}
+    found |= {"all": single} if len(single) > len(thesis) else {}
     return {
         which: {name: [row[k] for row in chosen] for k, name in enumerate(table.columns)}
         for which, chosen in found.items()

@@ -76,14 +76,11 @@ def _room(n: int) -> dict[str, float]:
 def _draw_bend(upper: Any, lower: Any, knot: str, index: int) -> None:
     """A diagram, and its loops with their senses."""
     for axes, smoothed in ((upper, False), (lower, True)):
-        draw_diagram(axes, bends.drawn(knot), smoothed=smoothed, width=1.5, size=6.0)
+        draw_diagram(axes, bends.drawn(knot), smoothed=smoothed, width=1.4, size=5.0)
         axes.set_adjustable("datalim")
     upper.set_title(panels.name_of(knot), fontsize=7.5, fontweight="bold", loc="center", pad=3)
     sign = f"{index:+d}".replace("-", "−") if index else "0"
-    lower.annotate(
-        f"Wh = {sign}", (0.5, 0.0), xycoords="axes fraction", xytext=(0, -1), textcoords="offset points",
-        ha="center", va="top", fontsize=7.5, color=panels.INK,
-    )  # fmt: skip
+    lower.set_title(f"Wh = {sign}", fontsize=7.5, loc="center", pad=1)
 
 
 FIGURE = Figure("4-6", "The Whitney index of pulled bends", runs, measure, draw)
