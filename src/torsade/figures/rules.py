@@ -42,7 +42,7 @@ def _in_turn(*names: str) -> Callable[[Columns], Floats]:
 
 
 def _left_out(found: Columns) -> Floats:
-    """log c_f of each bend by a linear fit in N, tau and Gamma, least squares, to all pulls of other knots."""
+    """log c_f of each bend by a linear least-squares fit in N, tau and Gamma to all pulls of other knots."""
     terms = [np.ones(len(found["knot"])), *(np.asarray(found[k], np.float64) for k in ("N", "tau", "Gamma"))]
     design, target = np.stack(terms, axis=1), np.log(np.asarray(found["c_f"], np.float64))
     families = np.array(_families(found))
