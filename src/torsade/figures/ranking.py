@@ -12,8 +12,9 @@ arrays, ties that come of drawing an item twice included.
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -75,6 +76,8 @@ def correlation(
 ) -> Correlation:
     """A rank correlation with its 95 % interval: bias-corrected and accelerated bootstrap over items, seeded.
 
+    Where a correction cannot be estimated, as of a perfect order, the interval is that of percentiles.
+
     Parameters
     ----------
     x, y : (n,) two values of each item
@@ -95,18 +98,25 @@ def correlation(
         found = of(x, y, counts[..., group])
         return np.where(np.isfinite(found), found, 0.0)  # a sample of ties orders nothing
 
-    found = stats.bootstrap(
-        (np.arange(n),),
-        of_samples,
-        n_resamples=RESAMPLES,
-        batch=500,
-        vectorized=True,
-        confidence_level=LEVEL,
-        # All samples of a perfect order are perfect: there is no bias to correct.
-        method="percentile" if abs(value) > 1 - 1e-12 else "BCa",
-        rng=np.random.default_rng(SEED),
-    ).confidence_interval
-    return Correlation(value, float(found.low), float(found.high))
+    def interval(method: Literal["BCa", "percentile"]) -> tuple[float, float]:
+        with warnings.catch_warnings():
+            warnings.simplefilter(
+                "ignore"
+            )  # where samples do not differ, the interval is nan, and tells that
+            found = stats.bootstrap(
+                (np.arange(n),),
+                of_samples,
+                n_resamples=RESAMPLES,
+                batch=500,
+                vectorized=True,
+                confidence_level=LEVEL,
+                method=method,
+                rng=np.random.default_rng(SEED),
+            ).confidence_interval
+        return float(found.low), float(found.high)
+
+    corrected = interval("BCa")
+    return Correlation(value, *(corrected if np.isfinite(corrected).all() else interval("percentile")))
 
 
 def agreement(x: ArrayLike, y: ArrayLike, groups: Sequence[object] | None = None) -> Agreement:
