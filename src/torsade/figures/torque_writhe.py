@@ -1,9 +1,9 @@
 """Self-torque of a pulled bend beside the writhe of its centerline (thesis 4.4).
 
 Strands are oriented towards their gripped ends. If a bend reptates, v = s t + V + Omega × x, two points in
-contact differ in velocity by s (t' - t), and the torque density of the law of the run, eta_f J ∫ (r × dv).t/R^5
-ds', is that of the writhe, ∫ t.(r × t')/R^3 ds'/4 pi, but for 1/R^2 and for what is not in contact. With R = 2h
-it would be
+contact differ in velocity by s (t' - t), and the torque density of the law of the run,
+eta_f J ∫ (r × dv).t/R^5 ds', is that of the writhe, ∫ t.(r × t')/R^3 ds'/4 pi, but for 1/R^2 and for what is
+not in contact. With R = 2h everywhere it would be
 
     torque = pi (s/h^2) eta_f J Wr_3.
 
@@ -29,7 +29,7 @@ from torsade.topology.measures import writhe_density
 __all__ = ["UNTIL", "Balance", "Coefficients", "Moment", "balance", "coefficients", "moment", "window"]
 
 UNTIL = 0.6
-"""End of the time [s] over which torques are averaged, which begins when a bend is taken to be tight, at 0.3 s."""
+"""End of the time [s] over which torques are averaged; it begins when a bend is taken to be tight, at 0.3 s."""
 
 STEPS = 16
 """Frames looked at, at most, in a window."""
@@ -38,8 +38,8 @@ STEPS = 16
 class Coefficients(NamedTuple):
     """What the torque is measured in: eta_f J [N m^2 s] and the radius h [m].
 
-    Node-pair drag has no collision viscosity of its own. At contact, with R = 2h and edges of mean rest length l,
-    it weighs as continuum drag of eta_f = eta 2h/l does.
+    Node-pair drag has no such viscosity: at contact, with R = 2h and edges of mean rest length l, it weighs as
+    continuum drag of eta_f = eta 2h/l does.
     """
 
     eta_f_J: float
@@ -54,7 +54,7 @@ class Moment:
     ----------
     strands, velocities : (n, 3) of each strand [m], [m/s]; they run towards the gripped end
     torque : (n_edges,) self-torque density of each strand [N]
-    writhe : (n_edges,) writhe density of each strand, per present length [1/m]; their sum times length is Wr_3
+    writhe : (n_edges,) writhe density of each strand [1/m]: times present lengths it sums up to Wr_3
     touching : (n_edges,) the part of it that comes from what is in contact [1/m]
     rest : (n_edges,) rest lengths of each strand [m]
     fit : the reptation fitted, None where the strands do not touch
@@ -115,7 +115,7 @@ def coefficients(result: Result) -> Coefficients:
 
 
 def orientation(result: Result) -> list[int]:
-    """+1 for a strand whose last node is gripped, -1 for one whose first node is, in the order of the strands."""
+    """For each strand +1 if its last node is gripped, -1 if its first node is."""
     pulled = result.dataset.attrs["pulled"]
     ends = {pulled[0]: pulled[1], pulled[2]: pulled[3]}
     return [1 if ends[letter] == "1" else -1 for letter in "AB"]
@@ -128,7 +128,8 @@ def window(result: Result, start: float = SETTLED, until: float = UNTIL) -> Ints
     frames = np.flatnonzero((time >= start * (1 - 1e-9)) & (time <= end * (1 + 1e-9)))
     if len(frames) == 0:
         frames = np.array([result.last_held])
-    return frames[np.unique(np.linspace(0, len(frames) - 1, min(STEPS, len(frames))).astype(int))]
+    chosen = np.unique(np.linspace(0, len(frames) - 1, min(STEPS, len(frames))).astype(int))
+    return np.asarray(frames[chosen])
 
 
 def moment(result: Result, frame: int) -> Moment:
@@ -183,7 +184,7 @@ def _touching_writhe(strands: list[Floats], torque: list[Floats], h: float) -> F
     r = mid[j] - mid[i]
     pair = np.einsum("kc,kc->k", e[i], np.cross(r, e[j])) / np.linalg.norm(r, axis=1) ** 3 / (4 * np.pi)
     n = len(mid)
-    return (np.bincount(i, pair, n) + np.bincount(j, pair, n)) / np.linalg.norm(e, axis=1)
+    return np.asarray((np.bincount(i, pair, n) + np.bincount(j, pair, n)) / np.linalg.norm(e, axis=1))
 
 
 @dataclass(frozen=True)
@@ -192,7 +193,8 @@ class Balance:
 
     Attributes
     ----------
-    writhe : Wr of the diagram, crossings counted; writhe_3 of the centerline, touching_writhe of what is in contact
+    writhe : Wr of the diagram: its crossings counted, right-handed ones as +1
+    writhe_3 : of the centerline; touching_writhe : of what is in contact
     torque : total self-torque [N m], and its standard deviation over the window
     speed : half the parting speed [m/s]; strand_speed the mean of those fitted along the two strands
     explained, alignment : see `reptation.Reptation`
@@ -259,7 +261,7 @@ def balance(result: Result, start: float = SETTLED, until: float = UNTIL) -> Bal
 
 
 def diagram_writhe(spec: Mapping[str, object]) -> int:
-    """Wr of the diagram of a bend that was pulled, its strands running towards their gripped ends."""
+    """Wr of the drawing of a bend that was pulled, its strands running towards their gripped ends."""
     from torsade.knots.finding import known_bend
 
     entry = known_bend(str(spec["knot"]))
