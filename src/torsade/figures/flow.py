@@ -1,4 +1,4 @@
-"""Velocities of a knot in the frame in which its body is at rest: arrows for pictures, profiles along strands."""
+"""Velocities of a knot in the frame in which its body is at rest: arrows, and profiles along strands."""
 
 from __future__ import annotations
 

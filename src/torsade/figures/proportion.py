@@ -1,4 +1,4 @@
-"""How nearly one quantity is proportional to another: slope through the origin and correlation, with intervals.
+"""How nearly one quantity is proportional to another: slope through the origin, and correlation.
 
 Both intervals come from a bootstrap over groups: bends that are one knot pulled in several ways are not
 independent, so whole families are drawn.

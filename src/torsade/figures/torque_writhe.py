@@ -29,7 +29,7 @@ from torsade.topology.measures import writhe_density
 __all__ = ["UNTIL", "Balance", "Coefficients", "Moment", "balance", "coefficients", "moment", "window"]
 
 UNTIL = 0.6
-"""End of the time [s] over which torques are averaged; it begins when a bend is taken to be tight, at 0.3 s."""
+"""End of the time [s] over which torques are averaged; it begins when a bend counts as tight, at 0.3 s."""
 
 STEPS = 16
 """Frames looked at, at most, in a window."""
@@ -38,8 +38,8 @@ STEPS = 16
 class Coefficients(NamedTuple):
     """What the torque is measured in: eta_f J [N m^2 s] and the radius h [m].
 
-    Node-pair drag has no such viscosity: at contact, with R = 2h and edges of mean rest length l, it weighs as
-    continuum drag of eta_f = eta 2h/l does.
+    Node-pair drag has no such viscosity: at contact, with R = 2h and edges of mean rest length l, it weighs
+    as continuum drag of eta_f = eta 2h/l does.
     """
 
     eta_f_J: float
