@@ -38,8 +38,8 @@ SHOWN = ("reef", "granny")
 COLUMNS = (
     *("knot", "preset", "pulled", "Wr", "Wr3", "Wr3_touching"),
     *("torque_N_m", "torque_sd_N_m", "reduced_torque", "constant", "correlation"),
-    *("v_m_per_s", "v_A_m_per_s", "v_B_m_per_s", "explained", "alignment", "rotation_rad_per_s"),
-    *("from_s", "to_s"),
+    *("v_m_per_s", "v_A_m_per_s", "v_B_m_per_s", "explained", "alignment", "turning_rad_per_s"),
+    *("turned_rad", "from_s", "to_s"),
 )
 """See `torsade.figures.torque_writhe.Balance`; v is half the parting speed."""
 
@@ -89,7 +89,7 @@ def row(knot: str, preset: Preset, b: Balance, result: Result) -> tuple[Cell, ..
         *(knot, preset, str(result.dataset.attrs["pulled"]), b.writhe, b.writhe_3, b.touching_writhe),
         *(b.torque, b.torque_spread, b.reduced_torque, b.constant, b.correlation),
         *(b.speed, *b.strand_speed, b.explained, b.alignment, b.turning),
-        *(b.start, b.end),
+        *(b.turned, b.start, b.end),
     )
 
 

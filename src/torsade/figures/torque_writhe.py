@@ -199,7 +199,7 @@ class Balance:
     speed : half the parting speed [m/s]; strand_speed the mean of those fitted along the two strands
     explained, alignment : see `reptation.Reptation`
     correlation : of torque density and writhe density along the body
-    turning : rate at which the knot turns about the pull [rad/s]
+    turning : rate at which the knot turns about the pull [rad/s]; turned : by how much at the end [rad]
     scale : pi (speed/h^2) eta_f J [N m]: the torque for Wr_3 = 1 if all of the writhe were at R = 2h
     start, end : of the window [s]
     """
@@ -215,6 +215,7 @@ class Balance:
     alignment: float
     correlation: float
     turning: float
+    turned: float
     scale: float
     start: float
     end: float
@@ -240,6 +241,7 @@ def balance(result: Result, start: float = SETTLED, until: float = UNTIL) -> Bal
     time, apart = data["time"].values, data["separation"].values
     speed = 0.5 * float((apart[last] - apart[first]) / (time[last] - time[first]))
     fits = [m.fit for m in seen if m.fit is not None]
+    speeds = np.mean([f.speed for f in fits], axis=0) if fits else np.full(2, np.nan)
     c = coefficients(result)
     torques = np.array([m.total_torque for m in seen])
     return Balance(
@@ -249,15 +251,20 @@ def balance(result: Result, start: float = SETTLED, until: float = UNTIL) -> Bal
         torque=float(torques.mean()),
         torque_spread=float(torques.std()),
         speed=speed,
-        strand_speed=(float(np.mean([f.speed[0] for f in fits])), float(np.mean([f.speed[1] for f in fits]))),
-        explained=float(np.mean([f.explained for f in fits])),
-        alignment=float(np.mean([f.alignment for f in fits])),
+        strand_speed=(float(speeds[0]), float(speeds[1])),
+        explained=_mean([f.explained for f in fits]),
+        alignment=_mean([f.alignment for f in fits]),
         correlation=float(np.mean([m.correlation for m in seen])),
         turning=float(data["rotation_rate"].values[frames].mean()),
+        turned=float(data["rotation"].values[last]),
         scale=np.pi * speed / c.h**2 * c.eta_f_J,
         start=float(time[first]),
         end=float(time[last]),
     )
+
+
+def _mean(values: list[float]) -> float:
+    return float(np.mean(values)) if values else np.nan
 
 
 def diagram_writhe(spec: Mapping[str, object]) -> int:
