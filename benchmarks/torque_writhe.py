@@ -26,6 +26,7 @@ PAGE = Path(__file__).parents[1] / "docs" / "torque-writhe.md"
 PRESETS: tuple[Preset, ...] = ("standard", "published")
 WINDOWS = ((0.3, 0.45), (0.45, 0.6), (0.3, 0.9))
 AGAINST = {"Wr": "Wr", "Wr3": "Wr₃", "Wr3_touching": "Wr₃ in contact"}
+FOLLOWS = {"twist_rad": "twist", "turned_rad": "rotation"}
 
 Found = Mapping[str, Balance]
 
@@ -43,6 +44,7 @@ def refined(short: Mapping[str, Any]) -> dict[str, Callable[[str], PrisonEscape]
 def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     options = common.parser(__doc__)
     options.add_argument("--no-write", action="store_true", help="leave docs/torque-writhe.md as it is")
+    options.add_argument("--runs", help="folder where runs are kept, and found again; by default nowhere")
     given = options.parse_args(arguments)
     choice = Choice(PRESETS, given.quick)
     same = bends.kinds(bends.labels(choice))
@@ -52,7 +54,7 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     specs = dict(bends.specs(choice, single))
     specs |= {f"{knot}, {way}": make(knot) for way, make in ways.items() for knot in single}
     with tempfile.TemporaryDirectory() as folder:
-        runs = results(specs, Path(folder))
+        runs = results(specs, Path(given.runs or folder))
         base: dict[str, Found] = {preset: _balances(runs, single, preset) for preset in PRESETS}
         finer = {way: _balances(runs, single, way) for way in ways}
         windows = {
@@ -62,6 +64,7 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     tables = {
         "bends": _bends_table(base),
         "fits": _fits_table({**base, **{f"standard, {w}": f for w, f in (finer | windows).items()}}),
+        "why": _why_table(base["standard"]),
         "refinement": _refinement_table(base["standard"], finer),
     }
     if not (given.quick or given.no_write):
@@ -89,7 +92,7 @@ def _bends_table(base: Mapping[str, Found]) -> str:
     """One row for each bend: what is counted, and torque, writhe and agreement with both presets."""
     heads = [
         *("bend", "Wr", "Wr₃", "in contact", "torque, mN m", "reduced", "constant", "density r", "explained"),
-        *("alignment", "turned, rad"),
+        *("alignment", "twist, rad", "turned, rad"),
     ]
     rows = []
     for knot in base["standard"]:
@@ -105,7 +108,7 @@ def _bends_table(base: Mapping[str, Found]) -> str:
                 pair(2, *(1e3 * b.torque for b in both)), pair(2, *(b.reduced_torque for b in both)),
                 pair(2, *(b.constant for b in both)), pair(2, *(b.correlation for b in both)),
                 pair(2, *(b.explained for b in both)), pair(2, *(b.alignment for b in both)),
-                pair(1, *(b.turned for b in both)),
+                pair(1, *(b.twist for b in both)), pair(1, *(b.turned for b in both)),
             ]
         )  # fmt: skip
     return common.table(heads, rows)
@@ -114,19 +117,40 @@ def _bends_table(base: Mapping[str, Found]) -> str:
 def _fits_table(found: Mapping[str, Found]) -> str:
     """Slopes through the origin and correlations of reduced torque with each kind of writhe."""
     heads = ["runs", *(f"{what}, {name}" for name in AGAINST.values() for what in ("slope", "r"))]
+    heads += [f"r, {name}" for name in FOLLOWS.values()]
     rows = []
     for way, balances in found.items():
+        fitted = fits(balances)
         row = [way]
-        for name, fit in fits(balances).items():
-            assert name in AGAINST
-            row += [_interval(fit.slope), _interval(fit.correlation)]
-        rows.append(row)
+        for name in AGAINST:
+            row += [_interval(fitted[name].slope), _interval(fitted[name].correlation)]
+        rows.append(row + [_interval(fitted[name].correlation) for name in FOLLOWS])
     return common.table(heads, rows)
 
 
 def _interval(estimate: Estimate) -> str:
     value, low, high = (_number(x) for x in estimate)
     return f"{value} [{low}, {high}]"
+
+
+def _why_table(base: Found) -> str:
+    """What makes torque over the writhe in contact differ from 1, where there is such writhe."""
+    heads = [
+        "bend",
+        "(2h/R)²",
+        "rest lengths",
+        "strands' speed over v",
+        "product",
+        "torque over writhe in contact",
+    ]
+    rows = []
+    for knot, b in base.items():
+        if abs(b.touching_writhe) >= 0.8:
+            pace = sum(b.strand_speed) / 2 / b.speed
+            parts = (b.nearness, b.shortening, pace, b.nearness * b.shortening * pace)
+            ratio = b.reduced_torque / b.touching_writhe
+            rows.append([knot.replace("_", " "), *(_number(x) for x in (*parts, ratio))])
+    return common.table(heads, rows)
 
 
 def _refinement_table(base: Found, finer: Mapping[str, Found]) -> str:

@@ -14,8 +14,9 @@ from torsade.cli.figure import draw
 from torsade.figures import bends, figure_4_3, figure_4_4
 from torsade.figures.base import Choice
 from torsade.figures.flow import arrows, flow
+from torsade.figures.moments import coefficients, moment
 from torsade.figures.runs import results
-from torsade.figures.torque_writhe import balance, coefficients, moment, window
+from torsade.figures.torque_writhe import balance, window
 from torsade.protocols import PrisonEscape
 from torsade.reptation import node_tangents
 from torsade.results import Result
@@ -188,7 +189,7 @@ def test_figure_4_4_tables(folder):
     found = results(figure_4_4.runs(choice), folder / "runs", workers=1)
     tables = figure_4_4.measure(found, choice)
     assert tables[""].column("knot") == list(bends.QUICK)
-    assert tables["fits"].column("against") == ["Wr", "Wr3", "Wr3_touching"]
+    assert tables["fits"].column("against") == ["Wr", "Wr3", "Wr3_touching", "twist_rad", "turned_rad"]
     expected = [ts.topology.state(bends.drawn(knot)).writhe for knot in bends.QUICK]
     assert tables[""].column("Wr") == expected
     path = folder / "figure-4-4.png"

@@ -16,7 +16,8 @@ import numpy as np
 from torsade.figures import bends, panels
 from torsade.figures.base import Cell, Choice, Figure, Preset, Table
 from torsade.figures.flow import Flow, arrows, flow
-from torsade.figures.torque_writhe import UNTIL, moment, orientation
+from torsade.figures.moments import moment, orientation
+from torsade.figures.torque_writhe import UNTIL
 from torsade.knots.finding import find
 from torsade.observables import SETTLED
 from torsade.protocols.tighten import Tighten

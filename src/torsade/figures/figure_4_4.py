@@ -17,8 +17,9 @@ from torsade.arrays import Floats
 from torsade.figures import bends, panels
 from torsade.figures.base import Cell, Choice, Figure, Preset, Table
 from torsade.figures.flow import arrows, flow
+from torsade.figures.moments import coefficients, moment
 from torsade.figures.proportion import Proportion, proportion
-from torsade.figures.torque_writhe import Balance, balance, coefficients, moment, window
+from torsade.figures.torque_writhe import Balance, balance, window
 from torsade.topology.codes import from_braid
 from torsade.view._extra import require
 from torsade.view.diagrams import NEGATIVE, POSITIVE, STRANDS, draw_diagram
@@ -39,7 +40,7 @@ COLUMNS = (
     *("knot", "preset", "pulled", "Wr", "Wr3", "Wr3_touching"),
     *("torque_N_m", "torque_sd_N_m", "reduced_torque", "constant", "correlation"),
     *("v_m_per_s", "v_A_m_per_s", "v_B_m_per_s", "explained", "alignment", "turning_rad_per_s"),
-    *("turned_rad", "from_s", "to_s"),
+    *("turned_rad", "twist_rad", "from_s", "to_s"),
 )
 """See `torsade.figures.torque_writhe.Balance`; v is half the parting speed."""
 
@@ -47,7 +48,7 @@ FITS = (
     *("preset", "against", "bends", "slope", "slope_low", "slope_high"),
     *("correlation", "correlation_low", "correlation_high"),
 )
-"""Reduced torque ≈ slope × a writhe, over the bends that are not the same as another, with 95 % intervals."""
+"""Reduced torque ≈ slope × a writhe; twist and rotation ≈ slope × reduced torque; with 95 % intervals."""
 
 PROFILE = ("knot", "preset", "strand", "arclength_m", "torque_density_N", "writhe_density_per_m")
 
@@ -59,6 +60,8 @@ LETTERS = {
     "E": (0.015, 0.372),
 }
 """Where the letters of the panels stand, in shares of the figure."""
+
+FOLLOWS = {"twist_rad": "twist", "turned_rad": "turned"}
 
 AGAINST = {"Wr": "writhe", "Wr3": "writhe_3", "Wr3_touching": "touching_writhe"}
 
@@ -89,20 +92,28 @@ def row(knot: str, preset: Preset, b: Balance, result: Result) -> tuple[Cell, ..
         *(knot, preset, str(result.dataset.attrs["pulled"]), b.writhe, b.writhe_3, b.touching_writhe),
         *(b.torque, b.torque_spread, b.reduced_torque, b.constant, b.correlation),
         *(b.speed, *b.strand_speed, b.explained, b.alignment, b.turning),
-        *(b.turned, b.start, b.end),
+        *(b.turned, b.twist, b.start, b.end),
     )
 
 
 def fits(found: Mapping[str, Balance]) -> dict[str, Proportion]:
-    """Reduced torque against each kind of writhe; of bends that are the same the first counts."""
+    """Reduced torque against each kind of writhe, and what may come of it against reduced torque.
+
+    Of bends that are the same the first counts.
+    """
     same = bends.kinds(found)
     single = {knot: b for knot, b in found.items() if same[knot] == knot}
     torque = [b.reduced_torque for b in single.values()]
     groups = [bends.family(knot) for knot in single]
-    return {
+    against = {
         name: proportion([getattr(b, field) for b in single.values()], torque, groups)
         for name, field in AGAINST.items()
     }
+    follows = {
+        name: proportion(torque, [getattr(b, field) for b in single.values()], groups)
+        for name, field in FOLLOWS.items()
+    }
+    return against | follows
 
 
 def frame_of(result: Result) -> int:
