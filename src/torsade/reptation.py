@@ -2,9 +2,9 @@
 
 Over the body of a knot, velocities are fitted by least squares with
 
-    v(x) ≈ V + Omega × (x - c) + s_k t,
+    v(x) ≈ V + Omega × (x - c) + u_k t,
 
-a rigid motion and one speed s_k along each strand k (thesis 4.4, "reptation"): c is the centroid of the body,
+a rigid motion and one speed u_k along each strand k (thesis 4.4, "reptation"): c is the centroid of the body,
 t the unit tangent. Nodes weigh as much as the length of fiber that they stand for.
 
 The body reaches on every strand from the first to the last edge in contact, that is, with a self-torque.
@@ -34,7 +34,7 @@ class Reptation(NamedTuple):
     ----------
     velocity : (3,) V, of the centroid of the body [m/s]
     rotation : (3,) Omega, of the body [rad/s]
-    speed : (n_strands,) s_k, along each strand as it is oriented [m/s]
+    speed : (n_strands,) u_k, along each strand as it is oriented [m/s]
     explained : share of the variance of velocities over the body that the fit explains
     alignment : mean cosine between v - V - Omega × (x - c) and the orientation of the strand
     centre : (3,) c [m]

@@ -79,7 +79,7 @@ def law_of_drag(strands, velocities, reach):
 
 
 def test_for_strands_that_slide_at_one_speed_torque_is_the_writhe_in_contact():
-    """Two strands wound around each other, v = s t: torque is pi s eta_f J Wr/h² (2h/R)², pair by pair."""
+    """Two strands wound around each other, v = u t: torque is pi u eta_f J Wr/h² (2h/R)², pair by pair."""
     strands, _ = helix(30 * H, 2, 600)
     speed = 3e-3
     velocities = [speed * node_tangents(x) for x in strands]

@@ -1,11 +1,11 @@
 """Self-torque of a pulled bend beside the writhe of its centerline (thesis 4.4).
 
-Strands are oriented towards their gripped ends. If a bend reptates, v = s t + V + Omega × x, two points in
-contact differ in velocity by s (t' - t), and the torque density of the law of the run,
+Strands are oriented towards their gripped ends. If a bend reptates, v = u t + V + Omega × x, two points in
+contact differ in velocity by u (t' - t), and the torque density of the law of the run,
 eta_f J ∫ (r × dv).t/R^5 ds', is that of the writhe, ∫ t.(r × t')/R^3 ds'/4 pi, but for 1/R^2 and for what is
 not in contact. With R = 2h everywhere it would be
 
-    torque = pi (s/h^2) eta_f J Wr_3.
+    torque = pi (u/h^2) eta_f J Wr_3.
 
 `Balance` holds both sides, and what the approximations leave out.
 """
