@@ -67,6 +67,23 @@ def _text(cell: object) -> str:
     return f"{cell:,}" if isinstance(cell, int) else str(cell)
 
 
+def put(text: str, page: Path, name: str) -> None:
+    """Replace what stands between the marks of this name in a page of the docs.
+
+    Raises
+    ------
+    TorsadeError
+        When the page has no such marks.
+    """
+    begin, end = f"<!-- {name}:begin -->", f"<!-- {name}:end -->"
+    old = page.read_text(encoding="utf-8")
+    if not 0 <= old.find(begin) < old.find(end):
+        raise TorsadeError(f"{page} lacks the marks {begin} and {end}; put them where the table belongs")
+    before, rest = old.split(begin, 1)
+    after = rest.split(end, 1)[1]
+    page.write_text(f"{before}{begin}\n{text}\n{end}{after}", encoding="utf-8")
+
+
 def seconds(call: Callable[[], object], repeats: int, clock: Callable[[], float] = CLOCK) -> float:
     """Median time of a call [s], after one that is not counted; of this process unless by another clock."""
     call()

@@ -15,7 +15,6 @@ from torsade.protocols.base import STANDARD_SPACING
 from torsade.protocols.prison_escape import PrisonEscape
 
 PAGE = Path(__file__).parents[1] / "docs" / "convergence.md"
-BEGIN, END = "<!-- convergence:begin -->", "<!-- convergence:end -->"
 SPACING_LIMIT, TOLERANCE_LIMIT = 0.03, 0.01
 """Changes of c_f, and of the thief's slip time, that are allowed."""
 
@@ -84,18 +83,6 @@ def page_table(found: dict[str, Any]) -> str:
     )
 
 
-def write(text: str, page: Path = PAGE) -> None:
-    """Put the text between the marks of the page; a page without them gets both."""
-    old = page.read_text(encoding="utf-8") if page.exists() else "# Convergence\n"
-    if BEGIN in old and END in old:
-        before, rest = old.split(BEGIN, 1)
-        after = rest.split(END, 1)[1]
-    else:
-        before, after = old.rstrip("\n") + "\n\n", "\n"
-    page.parent.mkdir(exist_ok=True)
-    page.write_text(f"{before}{BEGIN}\n{text}\n{END}{after}", encoding="utf-8")
-
-
 def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     options = common.parser(__doc__)
     options.add_argument("--data", help="folder of two-strand centerlines, such as reef.csv")
@@ -119,7 +106,7 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     }
     text = page_table(found)
     if not (given.quick or given.no_write):
-        write(text)
+        common.put(text, PAGE, "convergence")
     return common.show(found, [text, *([note] if note else [])], given.json)
 
 

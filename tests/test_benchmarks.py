@@ -46,6 +46,7 @@ SCRIPTS = (
     "tight",
     "building",
     "variants",
+    "tails",
 )
 
 
@@ -95,17 +96,15 @@ def test_absent_centerlines_are_left_out_in_one_sentence(script: Any, tmp_path: 
     assert common.data_files(None, ("reef",))[0] == {}
 
 
-def test_the_convergence_table_replaces_the_one_before(script: Any, tmp_path: Path) -> None:
-    convergence = script("convergence")
-    page = tmp_path / "docs" / "convergence.md"
-    page.parent.mkdir()
-    page.write_text(f"# Title\n\n{convergence.BEGIN}\nold\n{convergence.END}\n\nReasons.\n", encoding="utf-8")
-    convergence.write("new", page)
-    text = page.read_text(encoding="utf-8")
-    assert text == f"# Title\n\n{convergence.BEGIN}\nnew\n{convergence.END}\n\nReasons.\n"
-    page.unlink()
-    convergence.write("new", page)
-    assert page.read_text(encoding="utf-8").count("new") == 1
+def test_a_table_replaces_the_one_before(script: Any, tmp_path: Path) -> None:
+    common, page = script("common"), tmp_path / "page.md"
+    begin, end = "<!-- some:begin -->", "<!-- some:end -->"
+    page.write_text(f"# Title\n\n{begin}\nold\n{end}\n\nReasons.\n", encoding="utf-8")
+    for _ in range(2):
+        common.put("new", page, "some")
+    assert page.read_text(encoding="utf-8") == f"# Title\n\n{begin}\nnew\n{end}\n\nReasons.\n"
+    with pytest.raises(ValueError, match="lacks the marks"):
+        common.put("new", page, "other")
 
 
 def test_the_exponent_is_the_slope_of_a_power_law(script: Any) -> None:

@@ -95,6 +95,21 @@ def test_slipping_ends_the_mean() -> None:
     assert found.speed == pytest.approx((0.4 * 0.01 + past * 0.05) / (0.4 + past))
 
 
+@pytest.mark.parametrize(("fast_until", "slips"), [(0.75, False), (1.0, True)])
+def test_a_bend_that_holds_again_has_not_slipped(fast_until: float, slips: bool) -> None:
+    t = np.linspace(0, 1, 101)
+    fast = (t > 0.7 + 1e-9) & (t <= fast_until + 1e-9)
+    found = observables.friction(t, np.cumsum(np.where(fast, 0.05, 0.01)) * 0.01, **WHAT)
+    assert (found.slipped_at is not None) is slips
+
+
+def test_too_little_way_is_no_slip() -> None:
+    t = np.linspace(0, 1, 101)
+    s = np.cumsum(np.where(t > 0.985, 0.019, 0.01)) * 0.01  # less than a diameter more than before
+    assert s[-1] - s[98] < 2 * H
+    assert observables.friction(t, s, **WHAT).slipped_at is None
+
+
 def test_being_loose_earlier_is_slipping() -> None:
     t = np.array([0.0, 0.25, 0.5, 0.55])
     found = observables.friction(t, 0.01 * t, **WHAT, loose_at=0.55)

@@ -36,7 +36,7 @@ SETTLED = 0.3
 """Time [s] from which a pulled bend is taken to be tight: the start of the mean pull speed."""
 
 SLIP_RATIO = 1.5
-"""A bend slips when its ends part this many times faster than they did on average since `SETTLED`.
+"""A bend slips when its ends part this many times faster than they did on average since `SETTLED`, for good.
 
 Some bends speed up to about twice the mean and stay there while their tails pass, so that a ratio of 2
 is met sooner or later by chance; with 1.5 slip times converge under refinement (docs/convergence.md).
@@ -171,8 +171,10 @@ def friction(
     """Topological friction c_f = F 2h/(eta A v) of a pulled bend (thesis 4.6), and when it slips.
 
     v is the mean pull speed, separation difference over time, from 0.3 s to the end or to slipping.
-    The bend slips when the pull speed first exceeds 1.5 times the mean since 0.3 s (between frames, by
-    linear interpolation of their ratio), or when nothing resists the pull any more, whichever is earlier.
+    The bend slips when the pull speed exceeds 1.5 times the mean since 0.3 s (between frames, by linear
+    interpolation of their ratio) and never again falls to that mean while the ends part by a diameter or
+    more, or when nothing resists the pull any more, whichever is earlier. A bend that gives way for a moment
+    and holds again has not slipped.
     When it slips before 0.3 s, or the history is no longer than that, v is the mean from the start.
 
     Parameters
@@ -185,7 +187,7 @@ def friction(
     loose_at : when nothing resisted the pull any more [s], if that happened
     """
     t, s = np.asarray(time, np.float64), np.asarray(separation, np.float64)
-    slipped = _first_slip(t, s)
+    slipped = _slip(t, s, 2 * radius)
     if loose_at is not None and (slipped is None or loose_at < slipped):
         slipped = loose_at
     end = float(t[-1]) if slipped is None else slipped
@@ -197,17 +199,22 @@ def friction(
     return Friction(2 * force / (eta * math.pi * radius * v) if v > 0 else None, v, slipped, start)
 
 
-def _first_slip(t: Floats, s: Floats) -> float | None:
-    """When the pull speed first passes `SLIP_RATIO` times the mean speed since `SETTLED` [s]."""
+def _slip(t: Floats, s: Floats, diameter: float) -> float | None:
+    """When a bend begins to slip for good [s]; t and s (n,) are its history, None while it holds.
+
+    The pull speed passes `SLIP_RATIO` times the mean since `SETTLED`, never falls back to that mean, and the
+    ends part by a diameter [m] more.
+    """
     after = t > SETTLED * (1 + 1e-9)
-    if not after.any():
-        return None
     mean = (s - np.interp(SETTLED, t, s)) / np.where(after, t - SETTLED, np.inf)
-    ratio = np.where(after & (mean > 0), pull_speed(t, s) / np.where(mean > 0, mean, 1.0), 1.0)
-    fast = ratio > SLIP_RATIO
-    if not fast.any():
+    speed = pull_speed(t, s)
+    ratio = np.where(after & (mean > 0), speed / np.where(mean > 0, mean, 1.0), 1.0)
+    slowest = np.minimum.accumulate(speed[::-1])[::-1]  # from each time on
+    begins = (ratio[1:] > SLIP_RATIO) & (ratio[:-1] <= SLIP_RATIO)
+    begins &= (slowest[1:] > mean[1:]) & (s[-1] - s[1:] >= diameter)
+    if not begins.any():
         return None
-    k = int(np.argmax(fast))
+    k = int(np.argmax(begins)) + 1
     return float(t[k - 1] + (t[k] - t[k - 1]) * (SLIP_RATIO - ratio[k - 1]) / (ratio[k] - ratio[k - 1]))
 
 

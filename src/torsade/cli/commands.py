@@ -49,7 +49,7 @@ def run(
 
 def demo(out: str, json: bool) -> int:
     """Pull a reef knot, draw it, and say what to try next."""
-    spec = PrisonEscape(knot="reef")
+    spec = PrisonEscape(knot="reef", tail=8e-3)
     target, picture, plot = _demo_files(out, spec)
     result = _run(spec, target, False, True, json)
     _print(result, target, json)

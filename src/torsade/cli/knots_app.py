@@ -96,7 +96,7 @@ def _build(
         str | None,
         Parameter(help="Fiber from the knot to its clamped and to its pulled end [default: 16 radii]."),
     ] = None,
-    tail: Annotated[str | None, Parameter(help="Length of free ends [default: 2.5 leads].")] = None,
+    tail: Annotated[str | None, Parameter(help="Length of free ends [default: 25 radii].")] = None,
     spacing: Annotated[
         str | None, Parameter(help="Greatest distance of nodes along the fiber [default: half a radius].")
     ] = None,

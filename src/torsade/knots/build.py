@@ -39,7 +39,7 @@ H_KAPPA = 0.5
 
 LEAD = 16.0  # [radii]
 LEAD_RANGE = (5.0, 1e4)  # [radii]
-TAILS = 2.5  # lengths of free ends [leads]
+TAIL = 25.0  # the median of the free ends of the published bends [radii]
 
 _ROUNDS = 6
 _FAILED = 2.0  # a curve that would have to be enlarged so much has not been spread
@@ -90,7 +90,7 @@ def build(
         length: of all closed strands, or of the one open strand [m]; by default the shortest that `build`
             makes. A closed knot is enlarged for it, an open one gets longer ends.
         lead: length from the knot to a clamped or pulled end [m], 5 radii or more; by default 16 radii.
-        tail: length of free ends [m]; by default two and a half leads.
+        tail: length of free ends [m]; by default 25 radii.
         spacing: greatest distance between nodes along a strand [m], one radius or less; by default half a
         radius.
         pulled: names of the clamped and the pulled end, such as "A1B1". They lie on the x axis and leave
@@ -108,7 +108,7 @@ def build(
         if given is not None and not n_open:
             raise TorsadeError(f"a {what} is given, but all strands are closed; leave it out")
     straight = LEAD if lead is None else in_radii("lead", lead, LEAD_RANGE, h)
-    free = TAILS * straight if tail is None else in_radii("tail", tail, LEAD_RANGE, h)
+    free = TAIL if tail is None else in_radii("tail", tail, LEAD_RANGE, h)
     total = None if length is None else in_radii("length", length, (1.0, 1e9), h)
     if total is not None and n_open and diagram.n_strands > 1:
         raise TorsadeError("length is for closed strands or one open strand; give lead and tail for these")

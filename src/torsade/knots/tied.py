@@ -47,6 +47,7 @@ def bend(
     lead: Size = None,
     spacing: Size = None,
     pulled: str | None = None,
+    tail: Size = None,
 ) -> BuiltKnot:
     """A loose, smooth fiber of a bend, or of another knot of two strands: a suture, a variant of the thesis.
 
@@ -60,17 +61,17 @@ def bend(
         name: such as "reef", "zeppelin", "alpine24" or "5,-3".
         radius: fiber radius h [m].
         lead: length from the knot to the clamped and to the pulled end [m], 5 radii or more, 16 radii by
-            default; longer where the strand needs more to come to the axis. Free ends are two and a half
-            times as long.
+            default; longer where the strand needs more to come to the axis.
         spacing: greatest distance between nodes along a strand [m], one radius or less; half a radius by
             default.
         pulled: the clamped end, then the pulled end, one of `PULLS`; by default what the name says: "A1B0"
             for the thief and the grief, "A1B1" for a bend.
+        tail: length of the free ends [m]; 25 radii by default.
 
     Raises:
         TorsadeError: a name or a pull that is not known, or a length out of range.
     """
-    return tie(known_bend(name).name, radius, lead=lead, spacing=spacing, pulled=pulled)
+    return tie(known_bend(name).name, radius, lead=lead, tail=tail, spacing=spacing, pulled=pulled)
 
 
 def strand(

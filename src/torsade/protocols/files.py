@@ -29,7 +29,7 @@ PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
 _REPLACES = MappingProxyType(
     {
         "knot": ("centerline", "length_unit", "smooth"),
-        "centerline": ("knot", "lead"),
+        "centerline": ("knot", "lead", "tail"),
         "tolerance": ("fixed_step",),
         "fixed_step": ("tolerance",),
     }

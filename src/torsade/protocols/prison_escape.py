@@ -57,9 +57,15 @@ class PrisonEscape(Knotted):
     )
     lead: Annotated[Length, Positive] | None = Field(
         None,
-        description="Length of fiber from a built-in knot to its clamped and to its pulled end; free ends "
-        "are two and a half times as long.",
+        description="Length of fiber from a built-in knot to its clamped and to its pulled end; by default "
+        "16 radii.",
         examples=["5 mm"],
+    )
+    tail: Annotated[Length, Positive] | None = Field(
+        None,
+        description="Length of the free ends of a built-in knot, by default 25 radii: when they are used "
+        "up a bend slips.",
+        examples=["8 mm"],
     )
     force: Annotated[Force, Positive] = Field(15.0, description="Force on the pulled end.")
     direction: Direction = Field(
@@ -91,8 +97,11 @@ class PrisonEscape(Knotted):
     @model_validator(mode="after")
     def _knot_or_centerline(self) -> PrisonEscape:
         self.check_shape('give a knot such as "reef", or a centerline, a file of two strands')
-        if self.knot is None and self.lead is not None:
-            raise TorsadeError("a centerline has the leads that it has; leave lead out, or give a knot")
+        for name in ("lead", "tail"):
+            if self.knot is None and getattr(self, name) is not None:
+                raise TorsadeError(
+                    f"a centerline has the {name}s that it has; leave {name} out, or give a knot"
+                )
         self.check_strain(self.force)
         return self
 
@@ -106,7 +115,7 @@ class PrisonEscape(Knotted):
 
         # The bend does not care which of its two ends is the clamped one.
         pulled = None if self.pulled is None else "".join(sorted((self.pulled[:2], self.pulled[2:])))
-        return check_built(bend(self.knot, self.h, self.lead, self.node_spacing, pulled), self.h)
+        return check_built(bend(self.knot, self.h, self.lead, self.node_spacing, pulled, self.tail), self.h)
 
     def grips(self) -> tuple[tuple[int, int], tuple[int, int]]:
         """(strand, end) of the clamped and of the pulled end."""
