@@ -206,7 +206,7 @@ def _sample_times(spec: Spec, experiment: Experiment) -> Floats:
 
 
 def _stops(spec: Spec, experiment: Experiment) -> list[tuple[float, bool, bool]]:
-    """Times at which a run stops [s], and whether for a frame, a sample, both, or for other ends and loads."""
+    """Times at which a run stops [s], and whether for a frame, a sample, both, or other ends and loads."""
     frames = np.linspace(0.0, spec.duration, spec.frames + 1)
     stops: list[tuple[float, bool, bool]] = []
     marked = [(t, True, False) for t in frames.tolist()]

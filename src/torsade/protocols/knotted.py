@@ -28,6 +28,7 @@ class Knotted(Spec):
         "at all.",
         examples=["0.1 mm"],
     )
+
     @field_validator("length_unit")
     @classmethod
     def _a_unit(cls, unit: str | None) -> str | None:

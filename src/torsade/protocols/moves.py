@@ -57,7 +57,9 @@ Curve = Callable[[Floats], Floats]
 
 
 class Loop(NamedTuple):
-    """The planar loop of an elastica: a pendulum that turns over once, theta = π + 2 am(u, m), u = (2 s/L - 1) K.
+    """The planar loop of an elastica: a pendulum that turns over once.
+
+    Its direction is theta = π + 2 am(u, m) with u = (2 s/L - 1) K.
 
     Attributes
     ----------

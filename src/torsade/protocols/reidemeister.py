@@ -32,12 +32,12 @@ _OWN = "reidemeister makes the strands that it moves, so there is no field {!r};
 class Reidemeister(Spec):
     """Make a Reidemeister move on fibers by moving their ends, and record what it costs.
 
-    R1: a fiber with one loop lies at rest; its ends are drawn apart until the loop is gone. R2: an arc is slid
-    over a straight strand until they cross twice, and set down. R3: three strands that cross each other are set
-    down, and the one on top is slid over the crossing of the others.
+    R1: a fiber with one loop lies at rest; its ends are drawn apart until the loop is gone. R2: an arc is
+    slid over a straight strand until they cross twice, and set down. R3: three strands that cross each other
+    are set down, and the one on top is slid over the crossing of the others.
 
     Grips hold the ends and their directions; before and after the move all grips lie in one plane. Moved
-    slowly, a fiber is in equilibrium all along: halve the speed by doubling the duration to see whether it is.
+    slowly, a fiber is in equilibrium all along: double the duration to see whether it is.
     """
 
     hints: ClassVar[Mapping[str, str]] = {
@@ -50,7 +50,8 @@ class Reidemeister(Spec):
 
     protocol: Literal["reidemeister"] = "reidemeister"
     move: Literal["R1", "R2", "R3"] = Field(
-        description="Reidemeister move to make: R1 (a loop), R2 (two crossings) or R3 (a strand over a crossing)."
+        description="Reidemeister move to make: R1 (a loop), R2 (two crossings) or R3 (a strand across a "
+        "crossing)."
     )
     length: Annotated[Length, Positive] | None = Field(
         None,
@@ -59,8 +60,8 @@ class Reidemeister(Spec):
     )
     ends: Literal["gripped", "swivel"] = Field(
         "gripped",
-        description="Whether ends are kept from spinning about their tangent (gripped), or one of each strand "
-        "spins freely (swivel).",
+        description="Whether ends are kept from spinning about their tangent (gripped), or one of each "
+        "strand spins freely (swivel).",
     )
     side: Literal["over", "under"] = Field(
         "over", description="On which side the moved strand passes; the two are mirror images."
@@ -68,7 +69,9 @@ class Reidemeister(Spec):
     material: str = Field(
         "optomechanical", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
     )
-    duration: Annotated[Time, Positive] = Field(60.0, description="How long the whole move takes.")
+    duration: Annotated[Time, Positive] = Field(
+        600.0, description="How long the whole move takes; four times as long for strands twice as long."
+    )
     frames: int = Field(
         240,
         ge=1,
@@ -80,8 +83,8 @@ class Reidemeister(Spec):
     def _slender(self) -> Reidemeister:
         if self.free_length < SHORTEST * self.h:
             raise TorsadeError(
-                f"a strand {1e3 * self.free_length:.4g} mm long is {self.free_length / self.h:.3g} radii; give a "
-                f"length of at least {SHORTEST:g} radii, {1e3 * SHORTEST * self.h:.4g} mm"
+                f"a strand {1e3 * self.free_length:.4g} mm long is {self.free_length / self.h:.3g} radii; "
+                f"give a length of at least {SHORTEST:g} radii, {1e3 * SHORTEST * self.h:.4g} mm"
             )
         return self
 

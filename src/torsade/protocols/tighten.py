@@ -103,9 +103,7 @@ class Tighten(Knotted):
         def still(now: State) -> bool:
             return self.until_still is not None and observables.fastest(now) < self.until_still
 
-        return Experiment(
-            boundary, measure, lambda history: {}, lambda history, loose_at: {}, over=still
-        )
+        return Experiment(boundary, measure, lambda history: {}, lambda history, loose_at: {}, over=still)
 
     @classmethod
     def report(cls, result: Result) -> dict[str, Any]:
