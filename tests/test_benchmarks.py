@@ -47,6 +47,7 @@ SCRIPTS = (
     "building",
     "variants",
     "tails",
+    "tightening",
 )
 
 

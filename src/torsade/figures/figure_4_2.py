@@ -1,8 +1,8 @@
 """Figure 4-2: strain in knots as they are pulled tight, and what Reidemeister moves cost.
 
-(A, B) Trefoil and figure-eight at four stages, coloured by strain. (C) The measured strain colours as a path in
-the CIE 1931 diagram. (D, E) Bending and stretching strain along the fiber at these stages. (F) Energy of the
-moves R1, R2 and R3, made on fibers by moving their ends.
+(A, B) Trefoil and figure-eight at four stages, coloured by strain. (C) The measured strain colours as a path
+in the CIE 1931 diagram. (D, E) Bending and stretching strain along the fiber at these stages. (F) Energy of
+the moves R1, R2 and R3, made on fibers by moving their ends.
 """
 
 from __future__ import annotations
@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 __all__ = ["FIGURE", "colours"]
 
+SHOWN = ("knot", "preset", "still_at_s", "h_kappa_max", "log_strain_max", "twist_share", "twist_adds")
+"""What the main table tells of each knot; the table `knots` tells more."""
+
 
 def runs(choice: Choice) -> Mapping[str, Spec]:
     """Both knots, as figure 4-1C has them, and all moves."""
@@ -33,7 +36,8 @@ def runs(choice: Choice) -> Mapping[str, Spec]:
 def measure(results: Mapping[str, Result], choice: Choice) -> Mapping[str, Table]:
     """What the knots and the moves came to, and all curves of the picture."""
     return {
-        "": twist_share.shares(results),
+        "": twist_share.shares(results).only(*SHOWN),
+        "knots": twist_share.shares(results),
         "barriers": move_energies.barriers(results),
         "moves": move_energies.move_paths(results),
         "paths": tightening.paths(results),
@@ -57,21 +61,22 @@ def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Cho
     """Write the picture; knots are those of the first preset."""
     preset = choice.presets[0]
     with require("matplotlib").rc_context(panels.STYLE):
-        figure = panels.new_figure(7.2, 9.0)
-        rows = figure.subfigures(4, 1, height_ratios=(1.55, 1.55, 2.6, 2.9), hspace=0.01)
-        for row, (knot, letter) in zip(rows, zip(twist_share.KNOTS, "AB", strict=True), strict=False):
-            axes = row.subplots(1, tightening.STAGES)
+        figure = panels.new_figure(7.2, 8.4)
+        rows = figure.subfigures(3, 1, height_ratios=(2.7, 2.5, 3.0), hspace=0.01)
+        pictures = rows[0].subplots(2, tightening.STAGES)
+        for axes, knot, letter in zip(pictures, twist_share.KNOTS, "AB", strict=True):
             tightening.draw_stages(axes, results[twist_share.label_of(knot, preset)])
             panels.letter(axes[0], letter, -0.02)
             axes[0].set_title(f"  {knot}", fontsize=8)
-        colour, *profiles = rows[2].subfigures(1, 3, width_ratios=(1.0, 1.15, 1.15))
+        panels.strain_bar(rows[0], pictures, shrink=0.55, aspect=24, pad=0.02)
+        colour, *profiles = rows[1].subfigures(1, 3, width_ratios=(1.0, 1.15, 1.15))
         _draw_colours(colour)
         for part, knot, letter in zip(profiles, twist_share.KNOTS, "DE", strict=True):
             above, below = part.subplots(2, 1, sharex=True)
             tightening.draw_profiles(above, below, tables["profiles"], knot, preset)
             panels.letter(above, letter, -0.2)
             above.set_title(knot, fontsize=8)
-        _draw_moves(rows[3], results)
+        _draw_moves(rows[2], results)
         panels.save(figure, path)
 
 
@@ -99,7 +104,7 @@ def _draw_colours(part: Any) -> None:
 
 def _draw_moves(row: Any, results: Mapping[str, Result]) -> None:
     """Panel F: pictures of each move before and after it, above its energy path."""
-    grid = row.subplots(2, 6, height_ratios=(1.0, 2.2), gridspec_kw={"wspace": 0.02})
+    grid = row.subplots(2, 6, height_ratios=(1.0, 1.9), gridspec_kw={"wspace": 0.02})
     shown = {"R1": "R1, gripped", "R2": "R2", "R3": "R3"}
     for k, (move, name) in enumerate(shown.items()):
         move_energies.draw_shapes(grid[0, 2 * k], grid[0, 2 * k + 1], results[move_energies.label_of(name)])

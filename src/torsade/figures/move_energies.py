@@ -9,16 +9,18 @@ import numpy as np
 
 from torsade.arrays import Floats
 from torsade.figures import panels
-from torsade.figures.base import Choice, Table
+from torsade.figures.base import Cell, Choice, Table
 from torsade.protocols.moves import LOOP, planar_loop
 from torsade.protocols.reidemeister import Reidemeister, elastic_energy
+from torsade.view.camera import SAMPLE, frame, knot_body
 from torsade.view.scene import picture
+from torsade.view.tube import smooth_centerline
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
     from torsade.results import Result
 
-__all__ = ["MOVES", "barriers", "draw_move", "draw_shapes", "energies", "move_paths", "runs"]
+__all__ = ["MOVES", "barrier_of", "barriers", "draw_move", "draw_shapes", "energies", "move_paths", "runs"]
 
 MOVES: Mapping[str, tuple[str, str]] = {
     "R1, gripped": ("R1", "gripped"),
@@ -30,7 +32,11 @@ MOVES: Mapping[str, tuple[str, str]] = {
 
 COLOURS: Mapping[str, str] = {"R1": "#c9543f", "R2": "#2f6fa8", "R3": "#3d8b78"}
 KINDS = ("bend", "stretch", "twist", "contact")
-SIZE = (384, 272)  # pixels
+SIZE = (512, 384)  # pixels
+WIDTH = 1.05
+"""Of the pictures, in free lengths."""
+
+ALONG_Z = (0.0, 0.0, 1.0)
 
 
 def label_of(move: str) -> str:
@@ -50,7 +56,7 @@ def runs(choice: Choice) -> dict[str, Spec]:
 def energies(result: Result) -> tuple[Floats, Floats]:
     """Displacement in units of L, and the energy beyond that of strands that lie apart, in units of B/L.
 
-    For R2 those have the bending energy of the arc at the start; for R1 and R3 they are straight, without any.
+    For R2 those have the bending energy of the arc at the start; for R1 and R3 they are straight: none.
     """
     report = Reidemeister.report(result)
     energy = elastic_energy(result) / report["B_over_L_J"]
@@ -71,36 +77,35 @@ def move_paths(results: Mapping[str, Result]) -> Table:
     return Table((*heads, *(f"{kind}_L_per_B" for kind in KINDS)), rows)
 
 
-def barriers(results: Mapping[str, Result]) -> Table:
-    """Energies of each move beyond those of strands that lie apart, in units of B/L, a row for every run.
+def barrier_of(result: Result) -> dict[str, float | int | None]:
+    """Energies of a move beyond those of strands that lie apart, in units of B/L, and when crossings change.
 
     `start` is at rest before the move, `top` the highest on its way, `end` after it.
     """
-    rows: list[Any] = []
-    for name in MOVES:
-        result = results[label_of(name)]
-        report = Reidemeister.report(result)
-        way, energy = energies(result)
-        began = int(np.searchsorted(result.dataset["time"], result.dataset.attrs["move_from_s"] * (1 - 1e-9)))
-        top = began + int(energy[began:].argmax())
-        crossings = np.array(report["crossings"])
-        changed = np.nonzero(np.diff(crossings))[0]
-        rows.append(
-            (
-                name,
-                report["length_m"],
-                report["B_over_L_J"],
-                float(energy[began]),
-                float(energy[top]),
-                float(energy[-1]),
-                float(way[top]),
-                int(crossings[0]),
-                int(crossings[-1]),
-                float(way[changed[0] + 1]) if changed.size else None,
-            )
-        )
-    heads = ("move", "length_m", "B_per_L_J", "start_L_per_B", "top_L_per_B", "end_L_per_B", "top_at_per_L")
-    return Table((*heads, "crossings_before", "crossings_after", "crossings_change_at_per_L"), rows)
+    report = Reidemeister.report(result)
+    way, energy = energies(result)
+    began = int(np.searchsorted(result.dataset["time"], result.dataset.attrs["move_from_s"] * (1 - 1e-9)))
+    top = began + int(energy[began:].argmax())
+    crossings = np.array(report["crossings"])
+    changed = np.nonzero(np.diff(crossings))[0]
+    return {
+        "length_m": float(report["length_m"]),
+        "B_per_L_J": float(report["B_over_L_J"]),
+        "start_L_per_B": float(energy[began]),
+        "top_L_per_B": float(energy[top]),
+        "end_L_per_B": float(energy[-1]),
+        "top_at_per_L": float(way[top]),
+        "crossings_before": int(crossings[0]),
+        "crossings_after": int(crossings[-1]),
+        "crossings_change_at_per_L": float(way[changed[0] + 1]) if changed.size else None,
+    }
+
+
+def barriers(results: Mapping[str, Result]) -> Table:
+    """What each move costs, a row for every run; see `barrier_of`."""
+    every = {name: barrier_of(results[label_of(name)]) for name in MOVES}
+    rows: list[tuple[Cell, ...]] = [(name, *numbers.values()) for name, numbers in every.items()]
+    return Table(("move", *next(iter(every.values()))), rows)
 
 
 def draw_move(axes: Any, results: Mapping[str, Result], move: str) -> None:
@@ -113,6 +118,22 @@ def draw_move(axes: Any, results: Mapping[str, Result], move: str) -> None:
         rest = way > 0 if move == "R1" else slice(None)
         dashed = {"linestyle": (0, (3, 1.5)), "linewidth": 1.2} if ends == "swivel" else {}
         axes.plot(way[rest], energy[rest], color=COLOURS[move], label=ends, **dashed)
+        crossings = results[label_of(name)].dataset["crossings"].values
+        for k in np.nonzero(np.diff(crossings))[0] + 1:
+            dot = {
+                "ms": 4.0,
+                "color": COLOURS[move],
+                "mec": "white",
+                "mew": 0.6,
+                "zorder": 4,
+                "clip_on": False,
+            }
+            axes.plot(way[k], energy[k], "o", **dot)
+            if ends == "gripped":
+                axes.annotate(
+                    f"{crossings[k - 1]:.0f} → {crossings[k]:.0f} crossings", (way[k], energy[k]),
+                    xytext=(4, 5), textcoords="offset points", fontsize=6.5,
+                )  # fmt: skip
     if move == "R1":
         planar = np.linspace(0.0, 0.32, 60)
         loop = [planar_loop(LOOP[0] + d).energy for d in planar]
@@ -128,10 +149,20 @@ def draw_shapes(before: Any, after: Any, result: Result) -> None:
     data = result.dataset
     cuts = np.asarray(data["node_start"].values, np.int64)[1:-1]
     first = int(np.searchsorted(data["time"], data.attrs["move_from_s"] * (1 - 1e-9)))
+    h, L = float(data.attrs["radius"]), Reidemeister.report(result)["length_m"]
     for axes, k in ((before, first), (after, -1)):
         strands = np.split(data["position"].values[k].astype(float), cuts)
         strain = np.split(data["log_strain"].values[k].astype(float), cuts)
-        options: dict[str, Any] = {"values": strain, "size": SIZE, "direction": (0.0, 0.0, 1.0), "fill": 0.9}
-        image = picture(strands, False, float(data.attrs["radius"]), bar=False, **options)
+        options: dict[str, Any] = {"values": strain, "size": SIZE, "direction": ALONG_Z}
+        image = picture(strands, False, h, bar=False, fill=_fill([x / h for x in strands], L / h), **options)
         axes.imshow(image, interpolation="antialiased")
         axes.axis("off")
+
+
+def _fill(strands: list[Floats], length: float) -> float:
+    """How much of a frame the knot takes when the frame is a little wider than the length; all in radii."""
+    middle = np.concatenate(strands).mean(axis=0)
+    curves = [smooth_centerline(x - middle, False, SAMPLE) for x in strands]
+    body = np.concatenate(knot_body(curves, [False] * len(curves), 1.0))
+    alone = frame(body, 1.0, SIZE, np.array([1.0, 0.0, 0.0]), np.array(ALONG_Z), 1.0).half_height
+    return alone / (0.5 * WIDTH * length * SIZE[1] / SIZE[0])

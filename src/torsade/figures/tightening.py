@@ -1,4 +1,4 @@
-"""Knots as they are pulled tight: stages on the way, strain along the fiber at each, pictures of them (Fig 4-2A-E)."""
+"""Knots as they are pulled tight: stages on the way, strain along the fiber (Fig 4-2A, B, D, E)."""
 
 from __future__ import annotations
 
@@ -25,17 +25,21 @@ STAGES = 4
 """Moments shown of each knot."""
 
 STAGE_COLOURS = ("#b9cbe0", "#7fa6cd", "#3f78b0", "#173f6b")
-SIZE = (480, 448)  # pixels
+SIZE = (480, 368)  # pixels
 FILL = 0.86
 
 PARTS = ("bend", "stretch", "twist")
 
 
 def stages(result: Result) -> list[int]:
-    """Frames at which the ends have come a third, two thirds and all of the way, after the first."""
+    """Frames: as it was tied, then taut, then half of the way of the ends from there to rest, then at rest.
+
+    Taut is the first frame after t = 0: a fiber takes up its stretch within milliseconds, and then slides.
+    """
     apart = result.dataset["end_to_end"].values
-    way = (apart - apart[0]) / (apart[-1] - apart[0])
-    return [int(np.argmax(way >= k / (STAGES - 1) - 1e-9)) for k in range(STAGES - 1)] + [len(apart) - 1]
+    last = len(apart) - 1
+    half = 1 + int(np.argmax(apart[1:] >= 0.5 * (apart[1] + apart[last])))
+    return [0, 1, half, last]
 
 
 def profiles(results: Mapping[str, Result]) -> Table:
@@ -47,23 +51,23 @@ def profiles(results: Mapping[str, Result]) -> Table:
         for stage, k in enumerate(stages(result), 1):
             time = float(data["time"][k])
             parts = [data[f"strain_{part}"].values[k] for part in PARTS]
-            columns = zip(s, *parts, data["log_strain"].values[k], strict=True)
-            rows += [(knot, preset, stage, time, *map(float, values)) for values in columns]
+            along = zip(s, *parts, data["log_strain"].values[k], strict=True)
+            rows += [(knot, preset, stage, time, *map(float, values)) for values in along]
     columns = ("knot", "preset", "stage", "time_s", "arclength_per_radius", *PARTS, "log_strain")
     return Table(columns, rows)
 
 
 def paths(results: Mapping[str, Result]) -> Table:
-    """Each knot's way to rest: where its ends are, its largest strains and stored energies, at every frame."""
+    """Each knot's way to rest: where its ends are, largest strains and stored energies, at every frame."""
     rows: list[Any] = []
     names = ("end_to_end", "length", "total_twist", "max_log_strain")
     energies = tuple(f"energy_{kind}" for kind in ("bend", "stretch", "twist", "contact"))
     for knot, preset, result in found(results):
         data = result.dataset
-        columns = [data[name].values for name in ("time", *names)]
-        columns += [data[f"strain_{part}"].values.max(axis=1) for part in PARTS]
-        columns += [data[name].values for name in energies]
-        rows += [(knot, preset, *map(float, values)) for values in zip(*columns, strict=True)]
+        histories = [data[name].values for name in ("time", *names)]
+        histories += [data[f"strain_{part}"].values.max(axis=1) for part in PARTS]
+        histories += [data[name].values for name in energies]
+        rows += [(knot, preset, *map(float, values)) for values in zip(*histories, strict=True)]
     heads = ("knot", "preset", "time_s", "end_to_end_m", "length_m", "twist_rad", "log_strain_max")
     return Table((*heads, *(f"{part}_max" for part in PARTS), *(f"{name}_J" for name in energies)), rows)
 
@@ -89,7 +93,7 @@ def draw_stages(row: Any, result: Result) -> None:
 
 
 def _common_view(positions: list[Floats], h: float) -> tuple[Floats, list[float]]:
-    """The side from which the last of several shapes is plainest, and how far each fills a frame of one scale."""
+    """The side that shows the last of several shapes best, and how far each fills a frame of one scale."""
     curves = [smooth_centerline((x - x.mean(axis=0)) / h, False, SAMPLE) for x in positions]
     bodies = [np.concatenate(knot_body([curve], [False], 1.0)) for curve in curves]
     toward = best_side([curves[-1].x], bodies[-1], 1.0, level=True)[1]

@@ -1,4 +1,4 @@
-"""How little of the strain is twist in knots pulled tight: the trefoil and the figure-eight at rest (Fig 4-1C).
+"""How little of the strain is twist in knots pulled tight: trefoil and figure-eight at rest (Fig 4-1C).
 
 Both are pulled by both ends with 0.02 N, in the optomechanical fiber, until no node is faster than 1 um/s.
 """
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from torsade.arrays import Floats
-from torsade.figures.base import Choice, Preset, Table
+from torsade.figures.base import Cell, Choice, Preset, Table
 from torsade.protocols.tighten import Tighten
 
 if TYPE_CHECKING:
@@ -20,7 +20,19 @@ if TYPE_CHECKING:
     from torsade.protocols.base import Spec
     from torsade.results import Result
 
-__all__ = ["COLOURS", "KNOTS", "draw_panel", "found", "label_of", "runs", "shares", "spec", "table"]
+__all__ = [
+    "COLOURS",
+    "KNOTS",
+    "draw_panel",
+    "found",
+    "label_of",
+    "rest_arclength",
+    "runs",
+    "share_of",
+    "shares",
+    "spec",
+    "table",
+]
 
 KNOTS: Mapping[str, str] = {"trefoil": "overhand", "figure-eight": "figure-eight"}
 """Names in the thesis, and in the catalogue."""
@@ -30,8 +42,8 @@ COLOURS: Mapping[str, str] = {"trefoil": "#2f6fa8", "figure-eight": "#c9543f"}
 STILL = "1 um/s"
 
 PUBLISHED_SPACING = "0.1 mm"
-"""Nodes half a radius apart: with those of the published preset, 0.69 radii, strands of these knots would pass
-through each other under this load, since the projected contact area vanishes where they cross at right angles."""
+"""Nodes half a radius apart: with those of the published preset, 0.69 radii, strands of these knots would
+pass through each other, since the projected contact area vanishes where they cross at right angles."""
 
 COLUMNS = ("knot", "preset", "arclength_per_radius", "strain", "strain_twist")
 
@@ -43,7 +55,9 @@ def label_of(knot: str, preset: Preset) -> str:
 
 def spec(knot: str, preset: Preset, quick: bool = False) -> Tighten:
     """A knot pulled until it is at rest; in a quick look, for a moment."""
-    how: dict[str, Any] = {"duration": "0.2 s", "frames": 8} if quick else {"duration": "40 s", "frames": 2000}
+    how: dict[str, Any] = (
+        {"duration": "0.2 s", "frames": 8} if quick else {"duration": "40 s", "frames": 2000}
+    )
     if preset == "published":
         how["spacing"] = PUBLISHED_SPACING
     return Tighten(knot=KNOTS[knot], preset=preset, until_still=STILL, **how)
@@ -85,41 +99,44 @@ def table(results: Mapping[str, Result]) -> Table:
         data = result.dataset
         s = rest_arclength(data) / data.attrs["radius"]
         total, twist = total_strain(data)[-1], data["strain_twist"].values[-1]
-        rows += [(knot, preset, float(a), float(b), float(c)) for a, b, c in zip(s, total, twist, strict=True)]
+        rows += [
+            (knot, preset, float(a), float(b), float(c)) for a, b, c in zip(s, total, twist, strict=True)
+        ]
     return Table(COLUMNS, rows)
 
 
-def shares(results: Mapping[str, Result]) -> Table:
-    """What each knot came to, and how much of its strain is twist, a row for every run.
+def share_of(result: Result) -> dict[str, float | None]:
+    """What a knot came to, and how much of its strain is twist.
 
-    `twist_share` is ∫ twist² ds over ∫ eps:eps ds; `twist_adds` the most by which twist raises the log strain of
-    any node.
+    `twist_share` is ∫ twist² ds over ∫ eps:eps ds; `twist_adds` the most by which twist raises the log strain
+    of any node.
     """
-    rows: list[Any] = []
-    for knot, preset, result in found(results):
-        data = result.dataset
-        total, twist = total_strain(data)[-1], data["strain_twist"].values[-1].astype(float)
-        without = np.abs(data["strain_bend"].values[-1] + data["strain_stretch"].values[-1])
-        weight = np.gradient(rest_arclength(data))
-        rows.append(
-            (
-                knot,
-                preset,
-                data.attrs.get("over_at_s"),
-                *(float(data[name][-1]) for name in ("end_to_end", "length", "h_kappa_max", "total_twist")),
-                *(float(data[f"strain_{part}"][-1].max()) for part in ("bend", "stretch", "twist")),
-                float(data["max_log_strain"][-1]),
-                float((weight * twist**2).sum() / (weight * total**2).sum()),
-                float((np.log1p(total) - np.log1p(without)).max()),
-            )
-        )
-    columns = ("knot", "preset", "still_at_s", "end_to_end_m", "length_m", "h_kappa_max", "total_twist_rad")
-    columns += ("bend_max", "stretch_max", "twist_max", "log_strain_max", "twist_share", "twist_adds")
-    return Table(columns, rows)
+    data = result.dataset
+    total, twist = total_strain(data)[-1], data["strain_twist"].values[-1].astype(float)
+    without = np.abs(data["strain_bend"].values[-1] + data["strain_stretch"].values[-1])
+    weight = np.gradient(rest_arclength(data))
+    return {
+        "still_at_s": data.attrs.get("over_at_s"),
+        "end_to_end_m": float(data["end_to_end"][-1]),
+        "length_m": float(data["length"][-1]),
+        "h_kappa_max": float(data["h_kappa_max"][-1]),
+        "total_twist_rad": float(data["total_twist"][-1]),
+        **{f"{part}_max": float(data[f"strain_{part}"][-1].max()) for part in ("bend", "stretch", "twist")},
+        "log_strain_max": float(data["max_log_strain"][-1]),
+        "twist_share": float((weight * twist**2).sum() / (weight * total**2).sum()),
+        "twist_adds": float((np.log1p(total) - np.log1p(without)).max()),
+    }
+
+
+def shares(results: Mapping[str, Result]) -> Table:
+    """What each knot came to, and how much of its strain is twist, a row for every run; see `share_of`."""
+    every = [(knot, preset, share_of(result)) for knot, preset, result in found(results)]
+    rows: list[tuple[Cell, ...]] = [(knot, preset, *numbers.values()) for knot, preset, numbers in every]
+    return Table(("knot", "preset", *every[0][2]), rows)
 
 
 def draw_panel(axes: Any, table: Table) -> None:
-    """Total strain (solid) and twist strain (dashed) along the tight knots, of the first preset in the table."""
+    """Total strain (solid) and twist strain (dashed) along the tight knots, of the table's first preset."""
     rows = [dict(zip(table.columns, row, strict=True)) for row in table.rows]
     preset = rows[0]["preset"]
     for knot, colour in COLOURS.items():

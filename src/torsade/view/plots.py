@@ -135,7 +135,7 @@ def plot_move(dataset: xarray.Dataset, path: str | Path) -> Path:
         below.margins(x=0.0)
         figure.align_ylabels([above, below])
         _title(above, dataset)
-        return _save(figure, path)
+        return save(figure, path)
 
 
 def _require(dataset: xarray.Dataset, *names: str) -> None:
