@@ -125,7 +125,7 @@ def _of_thesis(table: Table, preset: Preset) -> dict[str, dict[str, Cell]]:
 
 def _printed(rule: str) -> str:
     """A rule's name with its letters in Greek."""
-    return rule.replace("tau", r"$\tau$").replace("Gamma", r"$\Gamma$").replace("|Whitney|", "|Wh|")
+    return rule.replace("tau", r"$\tau$").replace("Gamma", r"$\Gamma$").replace("Whitney, absolute", "|Wh|")
 
 
 FIGURE = Figure("4-5", "Counting rules and the phase diagram of bends", runs, measure, draw)
