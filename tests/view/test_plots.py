@@ -35,7 +35,7 @@ def _figure(monkeypatch):
         kept["figure"] = figure
         return path
 
-    monkeypatch.setattr(plots, "_save", keep)
+    monkeypatch.setattr(plots, "save", keep)
     return lambda: kept["figure"]
 
 
