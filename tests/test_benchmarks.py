@@ -46,8 +46,10 @@ SCRIPTS = (
     "tight",
     "building",
     "variants",
+    "chapter4",
     "tails",
     "torque_writhe",
+    "tightening",
 )
 
 

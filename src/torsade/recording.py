@@ -22,7 +22,7 @@ from torsade.errors import TorsadeError, counted, quoted
 from torsade.motion.overdamped import Checkpoint
 from torsade.results import Result
 
-__all__ = ["SAMPLE", "VARIABLES", "Recording"]
+__all__ = ["BYTES_PER_NODE", "SAMPLE", "VARIABLES", "Recording"]
 
 FLUSH_EVERY = 0.5
 """Least time between writes to disk [s]: frames that come faster are written together."""
@@ -40,6 +40,8 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "total_twist": (("time",), "rad", "twist of the fiber"),
     "max_log_strain": (("time",), "", "largest log(1 + sqrt(eps:eps))"),
     "twist": (("time", "fiber"), "rad", "twist of each fiber"),
+    "displacement": (("time",), "m", "how far moved ends have gone"),
+    "crossings": (("time",), "", "crossings seen along z"),
     "energy_stretch": (("time",), "J", "stretch energy"),
     "energy_bend": (("time",), "J", "bending energy"),
     "energy_twist": (("time",), "J", "twist energy"),
@@ -52,10 +54,24 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "self_torque": (("time", "edge"), "N", "torque by collision drag per rest length, without own spin"),
     "rotation_rate": (("time",), "rad/s", "rate at which the knot turns about the pull"),
     "rotation": (("time",), "rad", "by how much the knot has turned about the pull"),
+    "strain_stretch": (("time", "node"), "", "stretch |x'| - 1"),
+    "strain_bend": (("time", "node"), "", "strain of bending on the surface, h kappa"),
+    "strain_twist": (("time", "node"), "", "strain of twist on the surface, h |theta'|/sqrt(2)"),
 }
 """Dimensions, SI unit and meaning of every recorded variable."""
 
-SINGLE_PRECISION = ("position", "log_strain", "velocity", "self_torque")
+SINGLE_PRECISION = (
+    "position",
+    "log_strain",
+    "strain_stretch",
+    "strain_bend",
+    "strain_twist",
+    "velocity",
+    "self_torque",
+)
+
+BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in SINGLE_PRECISION)
+"""What a frame takes for every node, and the edge that comes with it."""
 
 SAMPLE = "sample_"
 """Beginning of the names of samples."""

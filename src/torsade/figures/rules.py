@@ -60,7 +60,7 @@ RULES: Mapping[str, Callable[[Columns], Floats]] = {
     "Gamma": _counted("Gamma"),
     "Gamma, least": _counted("Gamma_least"),
     "Gamma, greatest": _counted("Gamma_greatest"),
-    "|Whitney|": lambda found: np.abs(_counted("Whitney")(found)),
+    "Whitney, absolute": lambda found: np.abs(_counted("Whitney")(found)),
     "N tau": lambda found: _counted("N")(found) * _counted("tau")(found),
     "N, then tau, then Gamma": _in_turn("N", "tau", "Gamma"),
     "tau, then Gamma, then N": _in_turn("tau", "Gamma", "N"),

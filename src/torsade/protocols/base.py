@@ -9,17 +9,17 @@ from __future__ import annotations
 import dataclasses
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from pathlib import Path, PurePath
+from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator, model_validator
 
-from torsade.errors import QuantityError, TorsadeError, quoted
+from torsade.errors import QuantityError, TorsadeError
 from torsade.material import Material, Section
 from torsade.material import preset as material_preset
 from torsade.protocols.sentences import sentence
-from torsade.units import Length, Number, Pressure, Time, Viscosity, quantity
+from torsade.units import Length, Number, Pressure, Time, Viscosity
 
 if TYPE_CHECKING:
     from torsade.arrays import Floats
@@ -65,6 +65,8 @@ class Experiment(NamedTuple):
     sampled : measures that `conclude` needs, recorded at times that do not depend on the number of frames
     about : attributes of the result, in words
     observe : state and what a motion measures on it → further scalars of one frame, named in `observed`
+    over : asked whenever something is recorded after t = 0: whether there is nothing left to see
+    later : ends and loads that take the place of those before at given times [s], in order of time
     """
 
     boundary: Boundary
@@ -76,6 +78,14 @@ class Experiment(NamedTuple):
     about: Mapping[str, str] = MappingProxyType({})
     observe: Callable[[State, Measured], dict[str, float]] = lambda state, measured: {}
     observed: tuple[str, ...] = ()
+    over: Callable[[State], bool] = lambda state: False
+    later: tuple[tuple[float, Boundary], ...] = ()
+
+    def boundary_at(self, time: float) -> Boundary:
+        """Ends and loads from this time [s] on."""
+        # A stop may lie the billionth part of a run before the time that it stands for.
+        begun = [boundary for start, boundary in self.later if start <= time * (1 + 1e-8)]
+        return begun[-1] if begun else self.boundary
 
 
 class Spec(BaseModel, ABC):
@@ -98,17 +108,6 @@ class Spec(BaseModel, ABC):
     """What to say to those who give a field that this protocol does not have."""
 
     protocol: str
-    knot: str | None
-    centerline: str | None
-    length_unit: str | None = Field(
-        None, description="Unit of x, y, z in the centerline's file, such as mm; by default m."
-    )
-    smooth: Annotated[Length, Field(ge=0)] | None = Field(
-        None,
-        description="Smooth the centerline over this length first, without changing its knot; by default not "
-        "at all.",
-        examples=["0.1 mm"],
-    )
     material: str = Field(
         "nylon", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
     )
@@ -197,18 +196,6 @@ class Spec(BaseModel, ABC):
             raise QuantityError(f"is {value}; give a whole number")
         return value
 
-    @field_validator("length_unit")
-    @classmethod
-    def _a_unit(cls, unit: str | None) -> str | None:
-        if unit is not None:
-            try:
-                quantity(f"1 {unit}", "length")
-            except QuantityError:
-                raise QuantityError(
-                    f"{quoted(unit)} is no unit of length; give m, mm, cm, um or in"
-                ) from None
-        return unit
-
     @field_validator("material")
     @classmethod
     def _known_material(cls, name: str) -> str:
@@ -223,21 +210,6 @@ class Spec(BaseModel, ABC):
                 "fixed_step for steps of one length, or tolerance for error-controlled steps"
             )
         return self
-
-    def check_shape(self, advice: str) -> None:
-        """Refuse two shapes, or none, or a unit for none."""
-        if self.knot is not None and self.centerline is not None:
-            raise TorsadeError(
-                f"knot {self.knot!r} and centerline {self.centerline!r} are both given; give one of them"
-            )
-        if self.knot is None and self.centerline is None:
-            raise TorsadeError(f"nothing to pull is given; {advice}")
-        if self.knot is not None and self.length_unit is not None:
-            raise TorsadeError(
-                f"length_unit {self.length_unit!r} belongs to a centerline; leave it out, or give one"
-            )
-        if self.knot is not None and self.smooth is not None:
-            raise TorsadeError("a built-in knot needs no smoothing; leave smooth out, or give a centerline")
 
     def check_strain(self, force: float) -> None:
         """Refuse a pull [N] under which the fiber is no longer elastic in any sense."""
@@ -292,12 +264,10 @@ class Spec(BaseModel, ABC):
 
     @property
     def node_spacing(self) -> float | None:
-        """Greatest distance between nodes [m]; None to keep the nodes as they are given."""
+        """Greatest distance between nodes [m]; None where nodes are kept as they are given."""
         if self.spacing is not None:
             return self.spacing
-        if self.preset == "published":
-            return PUBLISHED_SPACING * self.h if self.knot is not None else None
-        return STANDARD_SPACING * self.h
+        return (PUBLISHED_SPACING if self.preset == "published" else STANDARD_SPACING) * self.h
 
     def stored(self) -> dict[str, Any]:
         """The fields as a result holds them: those that were given or have defaults."""
@@ -333,9 +303,9 @@ class Spec(BaseModel, ABC):
         return drive(self, progress, out, resume, overwrite)
 
     @property
+    @abstractmethod
     def shape_name(self) -> str:
-        """Name of what is pulled, for tables and titles: the knot's, or that of the centerline's file."""
-        return self.knot or PurePath(str(self.centerline)).stem
+        """Name of what is moved, for tables and titles."""
 
     @abstractmethod
     def configuration(self) -> Centerline:

@@ -62,6 +62,9 @@ COMMON = (
     "log_strain",
     "velocity",
     "self_torque",
+    "strain_stretch",
+    "strain_bend",
+    "strain_twist",
 )
 """What every protocol records."""
 
@@ -93,8 +96,9 @@ def drive(
             motion.restore(recording.checkpoint)
         clock = _Clock(spec.duration, motion, tell)
         with Patience(clock.stopping) as patience:
-            loose_at = _record(spec, experiment, motion, recording, clock, patience)
-            return recording.finish(experiment.conclude(recording.samples(), loose_at))
+            loose_at, over = _record(spec, experiment, motion, recording, clock, patience)
+            numbers = experiment.conclude(recording.samples(), loose_at)
+            return recording.finish(numbers | ({"over_at_s": motion.time} if over else {}))
     except KeyboardInterrupt:
         recording.stop("interrupted")
         raise Interrupted(recording.reached, recording.done, recording.part) from None
@@ -205,11 +209,12 @@ def _sample_times(spec: Spec, experiment: Experiment) -> Floats:
 
 
 def _stops(spec: Spec, experiment: Experiment) -> list[tuple[float, bool, bool]]:
-    """Times at which something is recorded [s], and whether that is a frame, a sample or both."""
+    """Times at which a run stops [s], and whether for a frame, a sample, both, or other ends and loads."""
     frames = np.linspace(0.0, spec.duration, spec.frames + 1)
     stops: list[tuple[float, bool, bool]] = []
     marked = [(t, True, False) for t in frames.tolist()]
     marked += [(t, False, True) for t in _sample_times(spec, experiment).tolist()]
+    marked += [(t, False, False) for t, _ in experiment.later if t < spec.duration]
     for t, frame, sample in sorted(marked, key=lambda stop: stop[0]):
         if stops and t - stops[-1][0] <= 1e-9 * spec.duration:
             t, *before = stops.pop()
@@ -225,13 +230,19 @@ def _record(
     recording: Recording,
     clock: _Clock,
     patience: Patience,
-) -> float | None:
-    """Move from stop to stop to the end; returns when nothing resisted the load any more [s], or None."""
+) -> tuple[float | None, bool]:
+    """Move from stop to stop to the end, or until nothing resists the load, or all is over.
+
+    Returns when nothing resisted the load any more [s], or None, and whether all was over.
+    """
     began = time.perf_counter() - recording.wall
     before = max(recording.reached, motion.time) if recording.done else -math.inf
+    if motion.time > 0 and experiment.over(motion.state):
+        return None, True
     for t, frame, sample in _stops(spec, experiment):
         if t <= before:
             continue
+        motion.boundary = experiment.boundary_at(motion.time)
         outcome = Outcome.REACHED if t == 0 else _advance(experiment, motion, t, clock, patience)
         slipped = outcome is Outcome.SLIPPED
         if not slipped or motion.time > before:
@@ -242,10 +253,12 @@ def _record(
                 recording.add(_frame(experiment, motion, spec.h))
             recording.keep(motion.checkpoint(), time.perf_counter() - began)
         if slipped:
-            return motion.time
+            return motion.time, False
+        if t > 0 and (frame or sample) and experiment.over(motion.state):
+            return None, True
         before = t
         clock.tick()
-    return None
+    return None, False
 
 
 def _advance(
@@ -282,6 +295,7 @@ def _settle(motion: Motion, until: float) -> Outcome:
 def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, float | Floats]:
     """Everything recorded at the present time."""
     assembly, state, now = motion.assembly, motion.state, motion.measure()
+    strain = observables.surface_strain(assembly, state, radius)
     common: dict[str, float | Floats] = {
         "time": motion.time,
         "compression": now.compression,
@@ -293,7 +307,10 @@ def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, f
         "external_work": motion.external_work,
         "dissipation": motion.dissipation,
         "position": state.x,
-        "log_strain": observables.log_strain(assembly, state, radius),
+        "log_strain": strain.log,
+        "strain_stretch": strain.stretch,
+        "strain_bend": strain.bend,
+        "strain_twist": strain.twist,
         "velocity": state.v,
         "self_torque": now.self_torque,
     }

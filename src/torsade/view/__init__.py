@@ -11,12 +11,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from torsade.view.plots import plot_separation, plot_tightening
+    from torsade.view.plots import plot_move, plot_separation, plot_tightening
     from torsade.view.scene import render, render_result
 
-__all__ = ["plot_separation", "plot_tightening", "render", "render_result"]
+__all__ = ["plot_move", "plot_separation", "plot_tightening", "render", "render_result"]
 
 _HOMES = {
+    "plot_move": "torsade.view.plots",
     "plot_separation": "torsade.view.plots",
     "plot_tightening": "torsade.view.plots",
     "render": "torsade.view.scene",
