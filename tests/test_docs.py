@@ -50,7 +50,14 @@ def test_the_python_example_runs(
 
 def test_commands_are_found() -> None:
     """The tests below have something to test."""
-    assert {line.split()[1] for line in commands()} == {"run", "topology", "convert", "tight", "knots", "figure"}
+    assert {line.split()[1] for line in commands()} == {
+        "run",
+        "topology",
+        "convert",
+        "tight",
+        "knots",
+        "figure",
+    }
     assert len(commands()) >= 5
 
 

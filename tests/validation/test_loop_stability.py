@@ -5,8 +5,8 @@ energy, with the work of the tension T, changes by
 
     ½ ∫ (B zeta'² + (T cos theta - B theta'²) zeta²) ds + ½ (C/L) (∫ theta' zeta ds)²
 
-where the last term is the twist that gripped ends put in for the writhe that is lost; it is absent when an end
-may spin. zeta vanishes at both grips, and so does ∫ zeta ds, since both lie in the plane.
+where the last term is the twist that gripped ends put in for the writhe that is lost; it is absent when an
+end may spin. zeta vanishes at both grips, and so does ∫ zeta ds, since both lie in the plane.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def stiffness(distance: float, twist: float, n: int = 300) -> float:
 
 @pytest.mark.parametrize(("ends", "onset"), [("swivel", 0.302), ("gripped", 0.325)])
 def test_the_loop_leaves_its_plane_where_it_becomes_unstable(ends: str, onset: float) -> None:
-    """Before that the loop is as flat as its own thickness lets it be; soon after it stands out of the plane."""
+    """Before that it is as flat as its own thickness lets it be; soon after it stands out of the plane."""
     found = brentq(lambda d: stiffness(d, C_OVER_B[ends]), 0.2, 0.4, xtol=1e-4)
     assert found == pytest.approx(onset, abs=2e-3)
     length = 40e-3
