@@ -26,6 +26,7 @@ __all__ = [
     "h_kappa",
     "hinge_curvature",
     "hinge_twist",
+    "integral",
     "log_strain",
     "pull_speed",
     "surface_strain",
@@ -145,6 +146,18 @@ def pull_speed(time: ArrayLike, separation: ArrayLike) -> Floats:
     speed = np.full(len(t), np.nan)
     speed[1:] = np.diff(s) / np.diff(t)
     return speed
+
+
+def integral(time: ArrayLike, rate: ArrayLike) -> Floats:
+    """Integral of a rate since the first frame, by the trapezoidal rule, shape (n,).
+
+    Parameters
+    ----------
+    time : (n,) increasing [s]
+    rate : (n,) at these times [something/s]
+    """
+    t, r = np.asarray(time, np.float64), np.asarray(rate, np.float64)
+    return np.concatenate([[0.0], np.cumsum(0.5 * np.diff(t) * (r[1:] + r[:-1]))])
 
 
 class Friction(NamedTuple):

@@ -50,16 +50,28 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "dissipation": (("time",), "J", "energy lost to drag since the start"),
     "position": (("time", "node", "space"), "m", "node positions"),
     "log_strain": (("time", "node"), "", "log(1 + sqrt(eps:eps)) on the surface"),
+    "velocity": (("time", "node", "space"), "m/s", "node velocities; zero at the start"),
+    "self_torque": (("time", "edge"), "N", "torque by collision drag per rest length, without own spin"),
+    "rotation_rate": (("time",), "rad/s", "rate at which the knot turns about the pull"),
+    "rotation": (("time",), "rad", "by how much the knot has turned about the pull"),
     "strain_stretch": (("time", "node"), "", "stretch |x'| - 1"),
     "strain_bend": (("time", "node"), "", "strain of bending on the surface, h kappa"),
     "strain_twist": (("time", "node"), "", "strain of twist on the surface, h |theta'|/sqrt(2)"),
 }
 """Dimensions, SI unit and meaning of every recorded variable."""
 
-SINGLE_PRECISION = ("position", "log_strain", "strain_stretch", "strain_bend", "strain_twist")
+SINGLE_PRECISION = (
+    "position",
+    "log_strain",
+    "strain_stretch",
+    "strain_bend",
+    "strain_twist",
+    "velocity",
+    "self_torque",
+)
 
 BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in SINGLE_PRECISION)
-"""What a frame takes for every node."""
+"""What a frame takes for every node, and the edge that comes with it."""
 
 SAMPLE = "sample_"
 """Beginning of the names of samples."""
@@ -90,6 +102,7 @@ class Recording:
             "sample": samples,
             "fiber": len(assembly.closed),
             "node": len(assembly.node_length),
+            "edge": len(assembly.edges),
             "space": 3,
         }
         self._arrays: dict[str, NDArray[Any]] = {

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from torsade.assembly import Assembly, State
     from torsade.centerline import Centerline
     from torsade.motion.ends import Boundary
-    from torsade.motion.overdamped import Laws, Stepping
+    from torsade.motion.overdamped import Laws, Measured, Stepping
     from torsade.results import Result
 
 __all__ = ["STANDARD_SPACING", "Experiment", "Progress", "Spec"]
@@ -64,6 +64,7 @@ class Experiment(NamedTuple):
         say whether there is such a place
     sampled : measures that `conclude` needs, recorded at times that do not depend on the number of frames
     about : attributes of the result, in words
+    observe : state and what a motion measures on it → further scalars of one frame, named in `observed`
     over : asked whenever something is recorded after t = 0: whether there is nothing left to see
     later : ends and loads that take the place of those before at given times [s], in order of time
     """
@@ -75,6 +76,8 @@ class Experiment(NamedTuple):
     catch: Callable[[State], bool] = lambda state: False
     sampled: tuple[str, ...] = ()
     about: Mapping[str, str] = MappingProxyType({})
+    observe: Callable[[State, Measured], dict[str, float]] = lambda state, measured: {}
+    observed: tuple[str, ...] = ()
     over: Callable[[State], bool] = lambda state: False
     later: tuple[tuple[float, Boundary], ...] = ()
 

@@ -60,6 +60,8 @@ COMMON = (
     "dissipation",
     "position",
     "log_strain",
+    "velocity",
+    "self_torque",
     "strain_stretch",
     "strain_bend",
     "strain_twist",
@@ -131,6 +133,7 @@ def _begin(
         "start": hashlib.sha256(state.x.tobytes()).hexdigest(),
     } | dict(experiment.about)
     own = experiment.measure(state)
+    own |= dict.fromkeys(experiment.observed, 0.0)
     first = {name: np.array([value]) for name, value in ({"time": 0.0} | own).items()}
     samples = [SAMPLE + name for name in ("time", *experiment.sampled)] if experiment.sampled else []
     return Recording.begin(
@@ -308,5 +311,7 @@ def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, f
         "strain_stretch": strain.stretch,
         "strain_bend": strain.bend,
         "strain_twist": strain.twist,
+        "velocity": state.v,
+        "self_torque": now.self_torque,
     }
-    return common | experiment.measure(state)
+    return common | experiment.measure(state) | experiment.observe(state, now)
