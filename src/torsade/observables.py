@@ -118,10 +118,9 @@ def surface_strain(assembly: Assembly, state: State, radius: float) -> SurfaceSt
     bend[node] = h_kappa(assembly, state, radius)
     twisted[node] = radius * np.abs(hinge_twist(assembly, state)) / assembly.hinge_length / math.sqrt(2)
     extension = edge_lengths(assembly, state) / assembly.rest_length - 1
-    total, meeting = np.zeros_like(bend), np.zeros_like(bend)
-    np.add.at(total, assembly.edges.ravel(), np.repeat(extension, 2))
-    np.add.at(meeting, assembly.edges.ravel(), 1.0)
-    return SurfaceStrain(total / meeting, bend, twisted)
+    ends, nodes = assembly.edges.ravel(), len(bend)
+    total = np.bincount(ends, np.repeat(extension, 2), nodes)
+    return SurfaceStrain(total / np.bincount(ends, minlength=nodes), bend, twisted)
 
 
 def log_strain(assembly: Assembly, state: State, radius: float) -> Floats:
