@@ -10,16 +10,20 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from benchmarks import common
 from torsade.figures import bends
 from torsade.figures.base import Choice, Preset
 from torsade.figures.figure_4_4 import fits
+from torsade.figures.moments import coefficients, moment, torque_of
 from torsade.figures.proportion import Estimate
 from torsade.figures.runs import results
-from torsade.figures.torque_writhe import Balance, balance
+from torsade.figures.torque_writhe import Balance, balance, window
 from torsade.motion.overdamped import Stepping
 from torsade.protocols.base import STANDARD_SPACING
 from torsade.protocols.prison_escape import PrisonEscape
+from torsade.reptation import node_tangents
 from torsade.results import Result
 
 PAGE = Path(__file__).parents[1] / "docs" / "torque-writhe.md"
@@ -61,10 +65,11 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
             f"from {start:g} s to {until:g} s": _balances(runs, single, "standard", start, until)
             for start, until in WINDOWS
         }
+        why = _why_table(base["standard"], runs)
     tables = {
         "bends": _bends_table(base),
         "fits": _fits_table({**base, **{f"standard, {w}": f for w, f in (finer | windows).items()}}),
-        "why": _why_table(base["standard"]),
+        "why": why,
         "refinement": _refinement_table(base["standard"], finer),
     }
     if not (given.quick or given.no_write):
@@ -133,8 +138,11 @@ def _interval(estimate: Estimate) -> str:
     return f"{value} [{low}, {high}]"
 
 
-def _why_table(base: Found) -> str:
-    """What makes torque over the writhe in contact differ from 1, where there is such writhe."""
+def _why_table(base: Found, runs: Mapping[str, Result]) -> str:
+    """What makes torque over the writhe in contact differ from 1, where there is such writhe.
+
+    And what it would be if strands moved as the fit says: with one speed, with two, and turning.
+    """
     heads = [
         "bend",
         "(2h/R)²",
@@ -143,14 +151,34 @@ def _why_table(base: Found) -> str:
         "product",
         "torque over writhe in contact",
     ]
+    heads += ["torque, mN m", "of one speed", "of two", "and of rotation"]
     rows = []
     for knot, b in base.items():
         if abs(b.touching_writhe) >= 0.8:
             pace = sum(b.strand_speed) / 2 / b.speed
             parts = (b.nearness, b.shortening, pace, b.nearness * b.shortening * pace)
             ratio = b.reduced_torque / b.touching_writhe
-            rows.append([knot.replace("_", " "), *(_number(x) for x in (*parts, ratio))])
+            torques = [1e3 * x for x in (b.torque, *_fitted_torques(runs[f"{knot}, standard"]))]
+            rows.append([knot.replace("_", " "), *(_number(x) for x in (*parts, ratio, *torques))])
     return common.table(heads, rows)
+
+
+def _fitted_torques(result: Result) -> list[float]:
+    """Torque of both strands sliding at their mean speed, each at its own, and turning besides [N m]."""
+    found = []
+    for frame in window(result):
+        m = moment(result, int(frame))
+        if m.fit is None:
+            continue
+        tangents = [node_tangents(x) for x in m.strands]
+        slides = [speed * t for speed, t in zip(m.fit.speed, tangents, strict=True)]
+        alike = [m.fit.speed.mean() * t for t in tangents]
+        turned = [
+            v + np.cross(m.fit.rotation, x - m.fit.centre) for v, x in zip(slides, m.strands, strict=True)
+        ]
+        eta_f_J = coefficients(result).eta_f_J
+        found.append([torque_of(m, v, eta_f_J) for v in (alike, slides, turned)])
+    return [float(x) for x in np.mean(found, axis=0)] if found else [0.0] * 3
 
 
 def _refinement_table(base: Found, finer: Mapping[str, Found]) -> str:

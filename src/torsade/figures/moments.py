@@ -16,7 +16,7 @@ from torsade.arrays import Floats, Ints
 from torsade.results import Result
 from torsade.topology.measures import writhe_density
 
-__all__ = ["Coefficients", "Moment", "Pairs", "coefficients", "moment", "orientation"]
+__all__ = ["Coefficients", "Moment", "Pairs", "coefficients", "moment", "orientation", "torque_of"]
 
 
 class Coefficients(NamedTuple):
@@ -191,3 +191,19 @@ def _density(pairs: Pairs, strands: list[Floats]) -> Floats:
     n = len(length)
     both = np.bincount(pairs.i, pairs.writhe, n) + np.bincount(pairs.j, pairs.writhe, n)
     return np.asarray(0.5 * both / length)
+
+
+def torque_of(m: Moment, velocities: list[Floats], eta_f_J: float) -> float:
+    """Total self-torque [N m] that other velocities of the nodes (n, 3) would give, by continuum drag.
+
+    Of what the fit says a strand does, for instance, in place of what it does.
+    """
+    mid = np.concatenate([0.5 * (x[1:] + x[:-1]) for x in m.strands])
+    u = np.concatenate([0.5 * (v[1:] + v[:-1]) for v in velocities])
+    e = np.concatenate([np.diff(x, axis=0) for x in m.strands])
+    t = e / np.linalg.norm(e, axis=1)[:, None]
+    rest = np.concatenate(m.rest)
+    i, j = m.pairs.i, m.pairs.j
+    r = mid[j] - mid[i]
+    turn = np.einsum("kc,kc->k", np.cross(r, u[j] - u[i]), t[i] + t[j])
+    return float(eta_f_J * (rest[i] * rest[j] * turn / np.linalg.norm(r, axis=1) ** 5).sum())
