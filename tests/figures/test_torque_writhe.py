@@ -188,7 +188,7 @@ def test_figure_4_4_tables(folder):
     choice = Choice(("standard",), quick=True)
     found = results(figure_4_4.runs(choice), folder / "runs", workers=1)
     tables = figure_4_4.measure(found, choice)
-    assert tables[""].column("knot") == list(bends.QUICK)
+    assert tables[""].column("knot") == tables["bends"].column("knot") == list(bends.QUICK)
     assert tables["fits"].column("against") == ["Wr", "Wr3", "Wr3_touching", "twist_rad", "turned_rad"]
     expected = [ts.topology.state(bends.drawn(knot)).writhe for knot in bends.QUICK]
     assert tables[""].column("Wr") == expected

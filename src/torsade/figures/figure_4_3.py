@@ -39,7 +39,6 @@ COLUMNS = (
     "knot",
     "preset",
     "strand",
-    "time_s",
     "mean_v_m_per_s",
     "least_v_m_per_s",
     "greatest_v_m_per_s",
@@ -88,7 +87,7 @@ def measure(results: Mapping[str, Result], choice: Choice) -> Mapping[str, Table
             found = flow(result, frame)
             for k, sign in enumerate(signs_of(result)):
                 name = (knot, preset, "AB"[k])
-                rows.append((*name, float(result.dataset["time"][frame]), *_summary(found, k, sign)))
+                rows.append((*name, *_summary(found, k, sign)))
                 values = (found.along[k], sign * found.sliding[k], sign * found.alignment[k])
                 profile += [(*name, *map(float, row)) for row in zip(*values, strict=True)]
     return {"": Table(COLUMNS, rows), "profile": Table(PROFILE, profile)}

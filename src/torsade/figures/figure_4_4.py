@@ -36,6 +36,9 @@ LINKS: Mapping[str, tuple[int, ...]] = {"Hopf": (1, 1), "Whitehead": (-1, -1, 2,
 
 SHOWN = ("reef", "granny")
 
+MAIN = ("knot", "preset", "Wr", "Wr3", "Wr3_touching", "reduced_torque", "constant", "correlation")
+"""The columns of the table in short; all are in the one named "bends"."""
+
 COLUMNS = (
     *("knot", "preset", "pulled", "Wr", "Wr3", "Wr3_touching"),
     *("torque_N_m", "torque_sd_N_m", "reduced_torque", "constant", "correlation"),
@@ -83,7 +86,13 @@ def measure(results: Mapping[str, Result], choice: Choice) -> Mapping[str, Table
             fitted.append((preset, name, fit.n, *fit.slope, *fit.correlation))
         for knot in SHOWN:
             profile += _densities(knot, preset, results[bends.label_of(knot, preset)])
-    return {"": Table(COLUMNS, rows), "fits": Table(FITS, fitted), "profile": Table(PROFILE, profile)}
+    brief = [tuple(full[COLUMNS.index(name)] for name in MAIN) for full in rows]
+    return {
+        "": Table(MAIN, brief),
+        "bends": Table(COLUMNS, rows),
+        "fits": Table(FITS, fitted),
+        "profile": Table(PROFILE, profile),
+    }
 
 
 def row(knot: str, preset: Preset, b: Balance, result: Result) -> tuple[Cell, ...]:
@@ -265,11 +274,11 @@ def _scatter(axes: Any, tables: Mapping[str, Table], name: str, choice: Choice) 
         axes.plot(
             [x[k] for k in mine], [y[k] for k in mine], "o", ms=3.2, mec="none", color=colour, alpha=0.8
         )
-        slope, low, high, r = next(
+        slope, least, most, r = next(
             np.array(row[3:7], float) for row in fitted.rows if row[0] == which and row[1] == name
         )
         axes.plot([-reach, reach], [-reach * slope, reach * slope], color=colour, lw=1)
-        lines.append((f"{which}: {slope:.2f} [{low:.2f}, {high:.2f}], r = {r:.2f}", colour))
+        lines.append((f"{which}: {slope:.2f} [{least:.2f}, {most:.2f}], r = {r:.2f}", colour))
     for k, (text, colour) in enumerate(lines):
         axes.text(
             0.03,
@@ -280,7 +289,8 @@ def _scatter(axes: Any, tables: Mapping[str, Table], name: str, choice: Choice) 
             color=colour,
             bbox={"fc": "white", "ec": "none", "pad": 0.6},
         )
-    axes.set(xlim=(-reach, reach), ylim=(-4.4, 4.4))
+    high = 1.3 * max(abs(float(v)) for v in y if isinstance(v, int | float))
+    axes.set(xlim=(-reach, reach), ylim=(-high, high))
     axes.set_xlabel(words[name], labelpad=2)
     axes.text(
         0.97, 0.04, "dashed: slope 1", transform=axes.transAxes, fontsize=6.3, ha="right", color=panels.MUTED
