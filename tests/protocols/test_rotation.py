@@ -63,11 +63,16 @@ def test_rotation_is_the_integral_of_its_rate(granny: ts.Result) -> None:
 
 
 def test_velocities_are_those_that_positions_change_by() -> None:
-    """Between frames close to each other, to the second order of the time between them."""
-    data = PrisonEscape(knot="reef", duration="50 ms", frames=400).run().dataset
+    """Trapezoidal rule over 32 frames, to the tolerance of the steps; those of other frames are not."""
+    data = PrisonEscape(knot="reef", duration="50 ms", frames=800).run().dataset
     x, v = data["position"].values.astype(float), data["velocity"].values.astype(float)
-    dt = float(data["time"][1])
-    moved = x[320:321] - x[319:320]
-    mean = 0.5 * (v[320] + v[319]) * dt
-    assert np.abs(moved[0] - mean).max() < 0.02 * np.abs(moved).max()
+    moved = x[672] - x[640]
+
+    def error(first: int) -> float:
+        mean = 0.5 * (v[first : first + 32] + v[first + 1 : first + 33])
+        missed = moved - data["time"].values[32] * mean.mean(axis=0)
+        return float(np.abs(missed).max() / np.abs(moved).max())
+
     assert not v[0].any()
+    assert error(640) < 0.015
+    assert error(540) > 4 * error(640)
