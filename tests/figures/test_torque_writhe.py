@@ -14,7 +14,7 @@ from torsade.cli.figure import draw
 from torsade.figures import bends, figure_4_3, figure_4_4
 from torsade.figures.base import Choice
 from torsade.figures.flow import arrows, flow
-from torsade.figures.moments import coefficients, moment
+from torsade.figures.moments import coefficients, moment, torque_of
 from torsade.figures.runs import results
 from torsade.figures.torque_writhe import balance, window
 from torsade.protocols import PrisonEscape
@@ -129,6 +129,17 @@ def test_the_granny_obeys_the_law_in_what_touches(granny):
     assert 0.2 < found.constant < 0.6
     np.testing.assert_allclose(found.strand_speed, found.speed, rtol=0.15)
     assert (found.start, found.end) == pytest.approx((0.3, 0.35))
+
+
+def test_the_fitted_motion_accounts_for_the_torque(granny):
+    """What is recorded is the law of drag on the recorded velocities; the fit's come close to it."""
+    seen, c = moment(granny, 32), coefficients(granny)
+    assert torque_of(seen, seen.velocities, c.eta_f_J) == pytest.approx(seen.total_torque, rel=1e-3)
+    slides = [u * node_tangents(x) for u, x in zip(seen.fit.speed, seen.strands, strict=True)]
+    assert torque_of(seen, slides, c.eta_f_J) == pytest.approx(seen.total_torque, rel=0.05)
+    near, shortened = seen.factors
+    law = np.pi * seen.fit.speed.mean() / c.h**2 * c.eta_f_J * seen.touching_writhe
+    assert law * near * shortened == pytest.approx(seen.total_torque, rel=0.05)
 
 
 def test_turning_a_strand_round_changes_no_density(granny):
