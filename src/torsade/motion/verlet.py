@@ -29,12 +29,10 @@ from torsade.motion.ends import Boundary
 from torsade.rod.constraint import factor_constraint, project_positions, project_velocities
 from torsade.rod.elasticity import add_elastic_forces, bend_energy, hinge_twist, twist_energy
 from torsade.rod.kinematics import carry_directors, edge_geometry, reference_twist_change, spread_directors
-from torsade.rod.stress import Criterion, stress_ratios, weakest
 
 REACHED = 0
 PAUSED = 5
 STRETCHED = 8
-BROKEN = 9
 
 MOST_ITERATIONS = 30
 """Of the projection: it takes three or four when nodes move by a hundredth of an edge."""
@@ -72,8 +70,6 @@ class Work(NamedTuple):
     p : (n_edges,) impulses over dt, or scratch of the projection
     moved : (n_nodes, 3) what the projection added in a step [m]
     new_tangent, change, m : of the step: tangents, changes of reference twist, twists of hinges
-    ratio : (n_hinges,) stress over strength
-    worst : (n_fibers,) the hinge that breaks, or -1
     """
 
     w: Floats
@@ -88,8 +84,6 @@ class Work(NamedTuple):
     new_tangent: Floats
     change: Floats
     m: Floats
-    ratio: Floats
-    worst: Ints
 
 
 class Clock(NamedTuple):
@@ -115,8 +109,6 @@ def verlet_work(a: Assembly) -> Work:
         new_tangent=np.zeros((n_edges, 3)),
         change=np.zeros(n_hinges),
         m=np.zeros(n_hinges),
-        ratio=np.zeros(n_hinges),
-        worst=np.full(len(a.closed), -1, np.int64),
     )
 
 
@@ -200,52 +192,51 @@ def begin(a: Assembly, rod: Rod, inertia: Inertia, bc: Boundary, state: State, g
     project_velocities(a, g.w, g.tangent, g.below, g.inverse, state.v, g.p)
 
 
+def step(a: Assembly, rod: Rod, inertia: Inertia, bc: Boundary, state: State, clock: Clock, g: Work) -> bool:
+    """Take one step, state in place after `begin`; returns False where edge lengths cannot be kept."""
+    half = 0.5 * rod.dt
+    left = math.exp(-rod.b * rod.dt)
+    _damp(inertia, bc.turned, left, state.omega, clock)
+    _kick(inertia, bc, state, g, half)
+    iterations = _drift(a, rod, state, g)
+    if iterations < 0:
+        return False
+    _turn_frames(a, state, g)
+    _forces(a, rod, bc, state, g, g.tangent)
+    _kick(inertia, bc, state, g, half)
+    factor_constraint(a, g.w, g.tangent, g.below, g.inverse)
+    project_velocities(a, g.w, g.tangent, g.below, g.inverse, state.v, g.p)
+    _damp(inertia, bc.turned, left, state.omega, clock)
+    clock.steps[0] += 1
+    clock.steps[1] += iterations
+    return True
+
+
 def advance(
     a: Assembly,
     rod: Rod,
     inertia: Inertia,
     bc: Boundary,
-    s: Criterion,
-    strength: Floats,
     state: State,
     clock: Clock,
     until: int,
     most: int,
     g: Work,
 ) -> int:
-    """Take steps (state in place, after `begin`) until their count is `until`, at most `most` of them.
-
-    Returns REACHED, PAUSED, STRETCHED (lengths cannot be kept), or BROKEN when the stress somewhere has come
-    to strength (n_hinges,) [Pa]; g.worst then holds the hinges, one per fiber, and the step is completed.
-    """
-    half = 0.5 * rod.dt
-    left = math.exp(-rod.b * rod.dt)
+    """Take steps until their count is `until`, at most `most` of them: REACHED, PAUSED or STRETCHED."""
+    begin(a, rod, inertia, bc, state, g)
     status = REACHED
-    taken = 0
-    while status == REACHED and clock.steps[0] < until:
-        if taken == most:
-            status = PAUSED
-            break
-        _damp(inertia, bc.turned, left, state.omega, clock)
-        _kick(inertia, bc, state, g, half)
-        iterations = _drift(a, rod, state, g)
-        if iterations < 0:
+    last = min(until, clock.steps[0] + most)
+    while clock.steps[0] < last and status == REACHED:
+        if not step(a, rod, inertia, bc, state, clock, g):
             status = STRETCHED
-            break
-        _turn_frames(a, state, g)
-        _forces(a, rod, bc, state, g, g.tangent)
-        _kick(inertia, bc, state, g, half)
-        factor_constraint(a, g.w, g.tangent, g.below, g.inverse)
-        project_velocities(a, g.w, g.tangent, g.below, g.inverse, state.v, g.p)
-        _damp(inertia, bc.turned, left, state.omega, clock)
-        clock.steps[0] += 1
-        clock.steps[1] += iterations
-        taken += 1
-        stress_ratios(a, s, g.tangent, g.m, strength, g.ratio)
-        if weakest(a, g.ratio, g.worst):
-            status = BROKEN
+    finish(a, state, g)
+    return PAUSED if status == REACHED and clock.steps[0] < until else status
+
+
+def finish(a: Assembly, state: State, g: Work) -> None:
+    """Make all directors of the first ones after the last step."""
     spread_directors(a.hinges, g.tangent, state.reference_twist, state.director)
-    return status
 
 
 def energies(a: Assembly, rod: Rod, inertia: Inertia, state: State, g: Work, out: Floats) -> None:
@@ -263,4 +254,4 @@ def energies(a: Assembly, rod: Rod, inertia: Inertia, state: State, g: Work, out
     out[3] = twist_energy(a, rod.C, g.m)
 
 
-compile_kernels(__name__, owning=("verlet_work",), plain=("verlet_work",))
+compile_kernels(__name__, plain=("verlet_work",))
