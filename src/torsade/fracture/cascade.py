@@ -16,11 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade.arrays import Floats
-from torsade.assembly import Assembly, split
+from torsade.assembly import Assembly
 from torsade.fracture.breaking import BROKEN, Bearing, advance_unbroken, stress_of_state
 from torsade.fracture.criteria import criterion
 from torsade.material import Material, Section
-from torsade.motion import verlet
 from torsade.motion.inertial import Inertial
 from torsade.motion.moving import Outcome
 from torsade.rod.elasticity import hinge_curvature
@@ -138,9 +137,9 @@ class Cascade:
         return self.motion.steps
 
     @property
-    def size(self) -> int:
-        """Nodes."""
-        return self.motion.size
+    def at_once(self) -> int:
+        """Steps that take about 0.2 s."""
+        return self.motion.at_once
 
     @property
     def lengths(self) -> Floats:
@@ -148,7 +147,7 @@ class Cascade:
         return self.motion.assembly.fiber_length.copy()
 
     def advance(self, until: float, max_steps: int = 2**62) -> Outcome:
-        """Advance to the step nearest to the time until [s], in at most max_steps steps, breaking on the way.
+        """Advance to the first step at the time until [s] or after, in at most max_steps steps, breaking on the way.
 
         Raises
         ------
@@ -185,26 +184,7 @@ class Cascade:
         self.released += stored - m.energies().total
 
     def _split(self, hinge: int) -> None:
-        m = self.motion
-        node = int(m.assembly.hinges[hinge, 2])
-        assembly = split(m.assembly, hinge)
-
-        def doubled(values: NDArray[Any]) -> NDArray[Any]:
-            return np.insert(values, node, values[node], axis=0)
-
-        state, bc = m.state, m.boundary
-        moment = m.inertia.moment
-        density = float(m.inertia.mass.sum() / m.assembly.node_length.sum())
-        m.replace(
-            assembly,
-            state._replace(
-                x=doubled(state.x),
-                v=doubled(state.v),
-                reference_twist=np.delete(state.reference_twist, hinge),
-            ),
-            bc._replace(held=doubled(bc.held), velocity=doubled(bc.velocity), force=doubled(bc.force)),
-            verlet.Inertia(density * assembly.node_length, moment),
-        )
+        self.motion.split(hinge)
         self._strength = np.delete(self._strength, hinge)
 
     def _freeze(self) -> None:

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade.arrays import Floats
-from torsade.assembly import Assembly, State
+from torsade.assembly import Assembly, State, split
 from torsade.errors import TorsadeError
 from torsade.material import Material, Section
 from torsade.motion import verlet
@@ -37,6 +37,10 @@ SAFETY = 0.5
 
 TOLERANCE = 1e-12
 """How far edges may be off their lengths, as a share of them."""
+
+
+NODE_STEPS_AT_ONCE = 2_000_000
+"""Steps times nodes that take about 0.2 s."""
 
 
 class Energies(NamedTuple):
@@ -69,12 +73,13 @@ class Inertial:
     """Inextensible fibers in inertial motion: a state, what is done to it, and a clock that counts steps.
 
     The boundary may be replaced between calls of `advance`. Steps all have one length, so that what is
-    looked at on the way changes nothing; times asked for are rounded to whole steps.
+    looked at on the way changes nothing; times asked for are rounded up to whole steps.
 
     Parameters
     ----------
     step : [s]; by default `STEP`, or `SAFETY` times the longest stable one where that is less
-    attached_moment : (n_edges,) moments of inertia of what turns along with edges [kg m^2]; by default none
+    attached_moment : (n_edges,) moments of inertia of what turns along with edges [kg m^2], by default none;
+        damping acts on the fiber alone
 
     Raises
     ------
@@ -109,12 +114,12 @@ class Inertial:
             )
         moment = material.rho * section.J * assembly.rest_length
         self.assembly = assembly
-        self.rod = verlet.Rod(
-            material.E_b * section.I, material.mu * section.J, material.twist_damping, dt, tolerance
-        )
+        total = moment if attached_moment is None else moment + attached_moment
+        self.rod = verlet.Rod(material.E_b * section.I, material.mu * section.J, dt, tolerance)
         self.inertia = verlet.Inertia(
             material.rho * section.A * assembly.node_length,
-            moment if attached_moment is None else moment + attached_moment,
+            total,
+            np.exp(-material.twist_damping * dt * moment / total),
         )
         self.boundary = boundary
         self.state = state.copy()
@@ -137,9 +142,9 @@ class Inertial:
         return int(self.clock.steps[1])
 
     @property
-    def size(self) -> int:
-        """Nodes."""
-        return len(self.state.x)
+    def at_once(self) -> int:
+        """Steps that take about 0.2 s."""
+        return max(1, NODE_STEPS_AT_ONCE // len(self.state.x))
 
     @property
     def dissipation(self) -> float:
@@ -147,11 +152,11 @@ class Inertial:
         return float(self.clock.dissipation[0])
 
     def steps_until(self, time: float) -> int:
-        """The number of steps after which it is that time [s], rounded."""
-        return round(time / self.rod.dt)
+        """The number of steps after which it is that time [s] or just later."""
+        return math.ceil(time / self.rod.dt * (1 - 1e-12) - 1e-9)
 
     def advance(self, until: float, max_steps: int = 2**62) -> Outcome:
-        """Advance to the step nearest to the time until [s], in at most max_steps steps.
+        """Advance to the first step at the time until [s] or after, in at most max_steps steps.
 
         Raises
         ------
@@ -186,10 +191,24 @@ class Inertial:
         verlet.energies(self.assembly, self.rod, self.inertia, self.state, self.work, out)
         return Energies(*(float(e) for e in out))
 
-    def replace(self, assembly: Assembly, state: State, boundary: Boundary, inertia: verlet.Inertia) -> None:
-        """Go on with other fibers, as after a break."""
-        self.assembly, self.state, self.boundary, self.inertia = assembly, state, boundary, inertia
-        self.work = verlet.verlet_work(assembly)
+    def split(self, hinge: int) -> None:
+        """Cut a fiber at a hinge: both sides keep their velocities, each node has the mass of its half edge."""
+        node = int(self.assembly.hinges[hinge, 2])
+        density = self.inertia.mass[node] / self.assembly.node_length[node]
+
+        def doubled(values: NDArray[Any]) -> NDArray[Any]:
+            return np.insert(values, node, values[node], axis=0)
+
+        state, bc, mass = self.state, self.boundary, doubled(self.inertia.mass)
+        self.assembly = split(self.assembly, hinge)
+        mass[node : node + 2] = density * self.assembly.node_length[node : node + 2]
+        twist = np.delete(state.reference_twist, hinge)
+        self.state = state._replace(x=doubled(state.x), v=doubled(state.v), reference_twist=twist)
+        self.boundary = bc._replace(
+            held=doubled(bc.held), velocity=doubled(bc.velocity), force=doubled(bc.force)
+        )
+        self.inertia = self.inertia._replace(mass=mass)
+        self.work = verlet.verlet_work(self.assembly)
 
     def saved(self) -> dict[str, NDArray[Any]]:
         """Copies of the arrays that decide how the motion goes on, by name."""

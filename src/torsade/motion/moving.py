@@ -34,8 +34,8 @@ class Motion(Protocol):
         """Completed steps."""
 
     @property
-    def size(self) -> int:
-        """Nodes that are moved: what a step costs."""
+    def at_once(self) -> int:
+        """Steps between looks at the screen and at Ctrl-C, about 0.2 s; a number, so that runs repeat."""
 
     def advance(self, until: float, max_steps: int = 2**62) -> Outcome:
         """Advance to the time until [s], in at most max_steps steps."""

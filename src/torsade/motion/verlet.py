@@ -17,7 +17,6 @@ edges, so they change neither the momentum nor the angular momentum of the nodes
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -26,7 +25,7 @@ from torsade._compile import compile_kernels
 from torsade.arrays import Bools, Floats, Ints
 from torsade.assembly import Assembly, State
 from torsade.motion.ends import Boundary
-from torsade.rod.constraint import factor_constraint, project_positions, project_velocities
+from torsade.rod.constraint import add_impulses, factor_constraint, project_positions, project_velocities
 from torsade.rod.elasticity import add_elastic_forces, bend_energy, hinge_twist, twist_energy
 from torsade.rod.kinematics import carry_directors, edge_geometry, reference_twist_change, spread_directors
 
@@ -39,23 +38,30 @@ MOST_ITERATIONS = 30
 
 
 class Rod(NamedTuple):
-    """Coefficients: stiffness in bending B and in twist C [N m^2], twist damping b [1/s], step dt [s].
+    """Coefficients: stiffness in bending B and in twist C [N m^2], step dt [s].
 
     tolerance is how far an edge may be off its length, as a share of it.
     """
 
     B: float
     C: float
-    b: float
     dt: float
     tolerance: float
 
 
 class Inertia(NamedTuple):
-    """Masses (n_nodes,) [kg] and moments of inertia about the tangents (n_edges,) [kg m^2]."""
+    """What moves, and what slows it.
+
+    Attributes
+    ----------
+    mass : (n_nodes,) [kg]
+    moment : (n_edges,) moments of inertia about the tangents [kg m^2]
+    kept : (n_edges,) share of its spin that damping leaves an edge in half a step, exp(-b dt)
+    """
 
     mass: Floats
     moment: Floats
+    kept: Floats
 
 
 class Work(NamedTuple):
@@ -67,8 +73,8 @@ class Work(NamedTuple):
     force, torque : (n_nodes, 3) [N], (n_edges,) [N m]
     tangent, length : (n_edges, 3), (n_edges,) [m]
     below, inverse : (n_edges,) factors of the constraint
-    p : (n_edges,) impulses over dt, or scratch of the projection
-    moved : (n_nodes, 3) what the projection added in a step [m]
+    p : (n_edges,) scratch of the projection
+    pull : (n_edges,) impulses of a step times its length [kg m]
     new_tangent, change, m : of the step: tangents, changes of reference twist, twists of hinges
     """
 
@@ -80,7 +86,7 @@ class Work(NamedTuple):
     below: Floats
     inverse: Floats
     p: Floats
-    moved: Floats
+    pull: Floats
     new_tangent: Floats
     change: Floats
     m: Floats
@@ -105,7 +111,7 @@ def verlet_work(a: Assembly) -> Work:
         below=np.zeros(n_edges),
         inverse=np.zeros(n_edges),
         p=np.zeros(n_edges),
-        moved=np.zeros((n, 3)),
+        pull=np.zeros(n_edges),
         new_tangent=np.zeros((n_edges, 3)),
         change=np.zeros(n_hinges),
         m=np.zeros(n_hinges),
@@ -124,14 +130,14 @@ def _forces(a: Assembly, rod: Rod, bc: Boundary, state: State, g: Work, tangent:
     add_elastic_forces(a, 0.0, rod.B, rod.C, False, g.length, tangent, g.m, force, torque)
 
 
-def _damp(inertia: Inertia, turned: Bools, factor: float, omega: Floats, clock: Clock) -> None:
-    """Spins times factor, those of turned edges excepted; what is lost counts as dissipation."""
-    moment, lost = inertia.moment, 0.0
+def _damp(inertia: Inertia, turned: Bools, omega: Floats, clock: Clock) -> None:
+    """Damp all spins but those of turned edges for half a step; what is lost counts as dissipation."""
+    moment, kept = inertia.moment, inertia.kept
     for e in range(omega.shape[0]):
         if not turned[e]:
-            lost += 0.5 * moment[e] * omega[e] * omega[e]
-            omega[e] *= factor
-    clock.dissipation[0] += lost * (1.0 - factor * factor)
+            before = omega[e]
+            omega[e] *= kept[e]
+            clock.dissipation[0] += 0.5 * moment[e] * (before * before - omega[e] * omega[e])
 
 
 def _kick(inertia: Inertia, bc: Boundary, state: State, g: Work, half: float) -> None:
@@ -148,17 +154,14 @@ def _kick(inertia: Inertia, bc: Boundary, state: State, g: Work, half: float) ->
 
 def _drift(a: Assembly, rod: Rod, state: State, g: Work) -> int:
     """Move nodes and angles for one step, lengths kept; returns iterations, or -1 when it cannot be done."""
-    x, v, moved = state.x, state.v, g.moved
+    x, v = state.x, state.v
     for i in range(x.shape[0]):
         for c in range(3):
             x[i, c] += rod.dt * v[i, c]
-            moved[i, c] = 0.0
     iterations = project_positions(
-        a, g.w, g.tangent, g.below, g.inverse, rod.tolerance, MOST_ITERATIONS, x, g.p, moved
+        a, g.w, g.tangent, g.below, g.inverse, rod.tolerance, MOST_ITERATIONS, x, g.p, g.pull
     )
-    for i in range(x.shape[0]):
-        for c in range(3):
-            v[i, c] += moved[i, c] / rod.dt
+    add_impulses(a, g.w, g.tangent, g.pull, 1.0 / rod.dt, v)
     for e in range(state.theta.shape[0]):
         state.theta[e] += rod.dt * state.omega[e]
     return iterations
@@ -195,8 +198,7 @@ def begin(a: Assembly, rod: Rod, inertia: Inertia, bc: Boundary, state: State, g
 def step(a: Assembly, rod: Rod, inertia: Inertia, bc: Boundary, state: State, clock: Clock, g: Work) -> bool:
     """Take one step, state in place after `begin`; returns False where edge lengths cannot be kept."""
     half = 0.5 * rod.dt
-    left = math.exp(-rod.b * rod.dt)
-    _damp(inertia, bc.turned, left, state.omega, clock)
+    _damp(inertia, bc.turned, state.omega, clock)
     _kick(inertia, bc, state, g, half)
     iterations = _drift(a, rod, state, g)
     if iterations < 0:
@@ -206,7 +208,7 @@ def step(a: Assembly, rod: Rod, inertia: Inertia, bc: Boundary, state: State, cl
     _kick(inertia, bc, state, g, half)
     factor_constraint(a, g.w, g.tangent, g.below, g.inverse)
     project_velocities(a, g.w, g.tangent, g.below, g.inverse, state.v, g.p)
-    _damp(inertia, bc.turned, left, state.omega, clock)
+    _damp(inertia, bc.turned, state.omega, clock)
     clock.steps[0] += 1
     clock.steps[1] += iterations
     return True

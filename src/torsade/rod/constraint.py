@@ -108,20 +108,23 @@ def project_positions(
     most: int,
     x: Floats,
     p: Floats,
-    moved: Floats,
+    pull: Floats,
 ) -> int:
     """Move nodes x (n_nodes, 3) [m] until all edges have their lengths; returns the iterations it took.
 
-    Moves are mass-weighted and along the given tangents, whose factors below and inverse are. moved
-    (n_nodes, 3) [m] gets their sum added, p (n_edges,) is scratch. Returns -1 when an edge is off by more
-    than tolerance times its length after `most` iterations.
+    Moves are mass-weighted and along the given tangents, whose factors below and inverse are. pull (n_edges,)
+    gets what all edges pulled [kg m], p (n_edges,) is scratch. Returns -1 when an edge is off by more than
+    tolerance times its length after `most` iterations.
     """
+    for e in range(pull.shape[0]):
+        pull[e] = 0.0
     for iteration in range(most):
         if lengthening(a, w, x, p) <= tolerance:
             return iteration
         solve_constraint(a, below, inverse, p)
         add_impulses(a, w, tangent, p, 1.0, x)
-        add_impulses(a, w, tangent, p, 1.0, moved)
+        for e in range(pull.shape[0]):
+            pull[e] += p[e]
     return -1
 
 
