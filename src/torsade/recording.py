@@ -46,10 +46,25 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "dissipation": (("time",), "J", "energy lost to drag since the start"),
     "position": (("time", "node", "space"), "m", "node positions"),
     "log_strain": (("time", "node"), "", "log(1 + sqrt(eps:eps)) on the surface"),
+    "end_distance": (("time",), "m", "distance of the two ends of the rod"),
+    "kappa_max": (("time",), "1/m", "largest curvature"),
+    "energy_kinetic": (("time",), "J", "kinetic energy of the centerline"),
+    "energy_spin": (("time",), "J", "kinetic energy of spin"),
+    "energy_released": (("time",), "J", "energy lost in breaks since the start"),
+    "piece_start": (
+        ("time", "piece_bound"),
+        "",
+        "first node of every piece; empty where pieces are not there",
+    ),
+    "kappa": (("time", "node"), "1/m", "curvature, 0 at ends"),
+    "twist_density": (("time", "node"), "rad/m", "twist density, 0 at ends"),
+    "stress": (("time", "node"), "Pa", "stress by the criterion chosen, 0 at ends"),
+    "angle": (("time",), "rad", "angle that the lower end has turned"),
+    "sample_angle": (("sample",), "rad", "angle at the times of samples"),
 }
 """Dimensions, SI unit and meaning of every recorded variable."""
 
-SINGLE_PRECISION = ("position", "log_strain")
+SINGLE_PRECISION = ("position", "log_strain", "kappa", "twist_density", "stress")
 
 SAMPLE = "sample_"
 """Beginning of the names of samples."""
@@ -278,8 +293,8 @@ class Recording:
         finally:
             self._discard()
 
-    def finish(self, numbers: Mapping[str, float]) -> Result:
-        """The result of a run that came to its end, with the numbers that belong to it as a whole."""
+    def finish(self, numbers: Mapping[str, Any]) -> Result:
+        """The result of a run that came to its end, with what belongs to it as a whole."""
         self.flush()
         self.attrs.update({"status": "complete"} | dict(numbers))
         self.attrs.update(self._progress())

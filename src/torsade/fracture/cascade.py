@@ -2,8 +2,8 @@
 
 A hinge breaks in the step in which its stress comes to its strength: its node is split in two, each with its
 half of the mass and the velocity of the whole. Every piece breaks at most once in a step, where stress over
-strength is largest. No break is nearer than the least fragment length lambda to an end of its piece (thesis
-3.3). Both sides of every break are followed; pieces that no end holds go on, or stop (thesis Fig 3-1C).
+strength is largest. Once the rod is broken, no break is nearer than the least fragment length lambda to an end
+of its piece (thesis 3.3). Both sides of every break are followed; pieces that no end holds go on, or stop (thesis Fig 3-1C).
 """
 
 from __future__ import annotations
@@ -63,13 +63,13 @@ class Fracture(NamedTuple):
 
 
 def strengths(
-    assembly: Assembly, sigma_c: float, disorder: float = 0.0, seed: int = 0, grain: float = 1e-3
+    rest_length: Floats, sigma_c: float, disorder: float = 0.0, seed: int = 0, grain: float = 1e-3
 ) -> Floats:
-    """Strength of every hinge of a rod [Pa], shape (n_hinges,).
+    """Strength of every hinge of a rod [Pa], shape (n_hinges,), from its edge lengths (n_edges,) [m].
 
-    The rod consists of grains of equal length, each as strong as sigma_c (1 + disorder xi), xi normally
-    distributed, at least a tenth of sigma_c; a hinge is as strong as the weakest grain that touches the length
-    it stands for. So the same seed is the same rod at every number of nodes.
+    The rod consists of grains of one length, each as strong as sigma_c (1 + disorder xi), xi normally
+    distributed, at least a tenth of sigma_c; a hinge is as strong as the weakest grain within the halves of the
+    two edges that it stands for. So the same seed is the same rod at every number of nodes.
 
     Parameters
     ----------
@@ -78,15 +78,13 @@ def strengths(
     grain : length of a grain [m], such as the diameter
     """
     if disorder == 0.0:
-        return np.full(len(assembly.hinges), float(sigma_c))
-    length = float(assembly.rest_length.sum())
-    n = max(1, math.ceil(length / grain - 1e-9))
+        return np.full(len(rest_length) - 1, float(sigma_c))
+    ends = np.cumsum(rest_length)
+    n = max(1, math.ceil(ends[-1] / grain - 1e-9))
     xi = np.random.Generator(np.random.Philox(seed)).standard_normal(n)
     bears = sigma_c * np.maximum(1 + disorder * xi, 0.1)
-    bounds = np.concatenate([[0.0], np.cumsum(assembly.rest_length)])
-    middle = 0.5 * (bounds[1:] + bounds[:-1])
-    first = np.floor(middle[:-1] / length * n + 1e-9).astype(int)
-    last = np.ceil(middle[1:] / length * n - 1e-9).astype(int)
+    middle = (ends - 0.5 * rest_length) / ends[-1] * n
+    first, last = np.floor(middle[:-1] + 1e-9).astype(int), np.ceil(middle[1:] - 1e-9).astype(int)
     return np.array([bears[i : max(i + 1, j)].min() for i, j in zip(first, last, strict=True)])
 
 
@@ -203,7 +201,9 @@ class Cascade:
         a, held = self.motion.assembly, self.motion.boundary.held
         along = a.edge_arclength[a.hinges[:, 0]] + 0.5 * a.rest_length[a.hinges[:, 0]]
         shorter = np.minimum(along, a.fiber_length[a.edge_fiber[a.hinges[:, 0]]] - along)
-        may = (shorter > _above(self.fracture.min_fragment)) & ~held[a.hinges[:, 2]]
+        may = ~held[a.hinges[:, 2]]
+        if self.breaks:
+            may &= shorter > _above(self.fracture.min_fragment)
         return Bearing(
             self._criterion,
             *self._moduli,
