@@ -20,9 +20,12 @@ from torsade.assembly import Assembly
 from torsade.fracture.breaking import BROKEN, Bearing, advance_unbroken, stress_of_state
 from torsade.fracture.criteria import criterion
 from torsade.material import Material, Section
+from torsade.motion import verlet
 from torsade.motion.inertial import Inertial
 from torsade.motion.moving import Outcome
 from torsade.rod.elasticity import hinge_curvature
+
+NEVER = 2**62
 
 __all__ = ["Break", "Cascade", "Fracture", "most_breaks", "strengths"]
 
@@ -112,13 +115,23 @@ class Cascade:
     ----------
     motion : one open fiber, as it is at t = 0, with what holds it
     fracture : strengths, criterion and least length
+    followed : how long after the first break the cascade is over [s]
     """
 
-    def __init__(self, motion: Inertial, fracture: Fracture, material: Material, section: Section) -> None:
+    def __init__(
+        self,
+        motion: Inertial,
+        fracture: Fracture,
+        material: Material,
+        section: Section,
+        followed: float = math.inf,
+    ) -> None:
         self.motion = motion
         self.fracture = fracture
         self.breaks: list[Break] = []
         self.released = 0.0
+        self.first_distance = math.nan
+        self._followed = followed
         self._moduli = material.E_b * section.h, material.mu * section.h
         self._criterion = criterion(fracture.criterion)
         self._strength = fracture.strength.copy()
@@ -154,20 +167,32 @@ class Cascade:
         """
         m, last = self.motion, self.motion.steps + max_steps
         while True:
+            end = self._end()
             status = advance_unbroken(
                 m.assembly, m.rod, m.inertia, m.boundary, self._bearing, m.state, m.clock,
-                m.steps_until(until), last - m.steps, m.work,
+                min(m.steps_until(until), end), last - m.steps, m.work,
             )  # fmt: skip
             if status != BROKEN:
                 m.check(status)
-                return Outcome(status)
+                over = m.steps >= end and status == verlet.REACHED
+                return Outcome.OVER if over else Outcome(status)
             self.snap([int(k) for k in self._bearing.worst if k >= 0])
+
+    def _end(self) -> int:
+        """The step after which the cascade is over."""
+        return (
+            self.motion.steps_until(self.breaks[0].time + self._followed)
+            if self.breaks and self._followed < math.inf
+            else NEVER
+        )
 
     def snap(self, hinges: list[int]) -> None:
         """Break the rod at these hinges, at most one of each piece, whatever the stress there."""
         m = self.motion
         self.measure()
         stored = m.energies().total
+        if not self.breaks:
+            self.first_distance = float(np.linalg.norm(m.state.x[-1] - m.state.x[0]))
         stress, kappa, twist_density = self._bearing.stress, self.kappa(), self.twist_density()
         for k in hinges:
             place = float(m.assembly.rest_length[: m.assembly.hinges[k, 1]].sum())
@@ -239,7 +264,7 @@ class Cascade:
     def saved(self) -> dict[str, NDArray[Any]]:
         """Copies of the arrays that decide how the cascade goes on, by name."""
         breaks = np.array(self.breaks, dtype=np.float64).reshape(-1, len(Break._fields))
-        own = {"breaks": breaks, "released": np.array(self.released)}
+        own = {"breaks": breaks, "ledger": np.array([self.released, self.first_distance])}
         return self.motion.saved() | own
 
     def recover(self, saved: Mapping[str, NDArray[Any]]) -> None:
@@ -251,6 +276,6 @@ class Cascade:
             if self.fracture.frozen:
                 self._freeze()
         self.breaks = [Break(*(float(value) for value in row)) for row in saved["breaks"]]
-        self.released = float(saved["released"])
+        self.released, self.first_distance = (float(value) for value in saved["ledger"])
         self.motion.recover(saved)
         self._bearing = self._bears()

@@ -7,7 +7,8 @@ of their spin. That of bending, rho I, is left out, as in thesis 3.5, and with i
 the spin's turning axis: both are smaller than what is kept by about (h/lambda)^2 at wavelength lambda.
 
 Ends are those of `torsade.motion.ends`: free, hinged (`clamp`), clamped (`clamp` with tangent=True), or moved.
-A clamp holds the edge at the end, so that the fiber bends from the middle of that edge on.
+A clamp holds the edge at the end, so that the fiber bends from the middle of that edge on; with
+`torsade.motion.grips` it bends from its very end.
 """
 
 from __future__ import annotations
@@ -57,16 +58,17 @@ class Energies(NamedTuple):
         return self.kinetic + self.spin + self.bend + self.twist
 
 
-def longest_step(assembly: Assembly, material: Material, section: Section) -> float:
-    """Longest stable step [s], 2 over the highest frequency that the shortest edge l holds.
+def longest_step(assembly: Assembly, material: Material, section: Section, boundary: Boundary) -> float:
+    """Longest stable step [s], 2 over the highest frequency that the shortest edge l that moves holds.
 
     Of twist waves that is 2 c_theta/l, c_theta = sqrt(mu/rho); of bending waves 4 sqrt(B/rho A)/l^2, and up to
     twice that at free ends, whose nodes carry half a mass.
     """
-    l = float(assembly.rest_length.min())
+    moves = ~boundary.held[assembly.edges].all(axis=1)
+    l = float(assembly.rest_length[moves].min(initial=math.inf))
     twist = 2 * math.sqrt(material.mu / material.rho) / l
     bend = 8 * math.sqrt(material.E_b * section.I / (material.rho * section.A)) / l**2
-    return 2 / max(twist, bend)
+    return 2 / max(twist, bend, 1e-300)
 
 
 class Inertial:
@@ -104,7 +106,7 @@ class Inertial:
                 f"fiber {int(np.argmax(assembly.closed))} is closed, and only open fibers move with inertia; "
                 "cut it open"
             )
-        longest = longest_step(assembly, material, section)
+        longest = longest_step(assembly, material, section, boundary)
         dt = min(STEP, SAFETY * longest) if step is None else step
         if not 0 < dt < longest:
             raise TorsadeError(

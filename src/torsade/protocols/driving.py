@@ -155,15 +155,15 @@ def _record(
         if t <= before * (1 + 1e-9):  # steps of one length end at a stop or just after it
             continue
         outcome = Outcome.REACHED if t == 0 else _advance(trial, t, clock, patience)
-        slipped = outcome is Outcome.SLIPPED
-        if not slipped or motion.time > before:
-            if sample or (slipped and trial.sampled):
+        ended = outcome in (Outcome.SLIPPED, Outcome.OVER)
+        if not ended or motion.time > before:
+            if sample or (ended and trial.sampled):
                 recording.sample({"time": motion.time} | trial.sample())
-            if frame or slipped:
+            if frame or ended:
                 recording.add(trial.frame())
             recording.keep(motion.saved(), motion.steps, time.perf_counter() - began)
-        if slipped:
-            return motion.time
+        if ended:
+            return motion.time if outcome is Outcome.SLIPPED else None
         before = t
         clock.tick()
     return None

@@ -158,8 +158,10 @@ class Breakable(Rod):
         strength = self.strengths(np.full(self.edges, self.length / self.edges))
         return breaking_shape(fiber, material, section, total_twist, strength, self.criterion)
 
-    def cascade(self, assembly: Assembly, state: State, boundary: Boundary) -> Cascade:
-        """The rod in this state, held so, with all that makes it break."""
+    def cascade(
+        self, assembly: Assembly, state: State, boundary: Boundary, followed: float = math.inf
+    ) -> Cascade:
+        """The rod in this state, held so, with all that makes it break; followed [s] after its first break."""
         from torsade.fracture.cascade import Cascade, Fracture
         from torsade.motion.inertial import Inertial
 
@@ -168,7 +170,7 @@ class Breakable(Rod):
         self.check_step(motion.rod.dt)
         frozen = self.pieces == "frozen"
         fracture = Fracture(self.strengths(assembly.rest_length), self.criterion, self.min_fragment, frozen)
-        return Cascade(motion, fracture, material, section)
+        return Cascade(motion, fracture, material, section, followed)
 
     def conclusion(self, cascade: Cascade, at_limit: Mapping[str, float]) -> dict[str, Any]:
         """Numbers and lists of a cascade that is over, for the attributes of its result."""

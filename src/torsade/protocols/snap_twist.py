@@ -45,7 +45,7 @@ class SnapTwist(Breakable):
 
         cascade, at_limit = self.broken()
         most = most_breaks(cascade.motion.assembly, self.min_fragment)
-        frames = PieceFrames(cascade, max(most, 1))
+        frames = PieceFrames(cascade, max(most, 1), grips=1)
         return Trial(
             cascade,
             NAMES,
@@ -58,14 +58,10 @@ class SnapTwist(Breakable):
 
     def broken(self) -> tuple[Cascade, dict[str, float]]:
         """The rod just after its first break, and what is said of the moment before."""
-        from torsade.motion import ends
+        from torsade.motion.grips import gripped
 
         shape, weakest = self.limit(self.twist)
-        assembly, state = shape.assembled()
-        boundary = ends.free(assembly)
-        for end in (0, 1):
-            boundary = ends.clamp(boundary, assembly, 0, end, tangent=True)
-        cascade = self.cascade(assembly, state, boundary)
-        cascade.snap([weakest])
+        cascade = self.cascade(*gripped(shape.x, shape.grips, self.twist))
+        cascade.snap([weakest + 1])  # the first hinge is that of the grip
         kappa = float(shape.kappa[1:-1][weakest])
         return cascade, self.at_limit(kappa, self.twist / self.length, shape.end_distance)
