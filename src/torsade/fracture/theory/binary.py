@@ -7,8 +7,8 @@ kappa_c to C kappa_c at most. Nothing breaks any more when that alone does not r
 
 Both sides together leave a condition on the ratio of twist and bending alone, Li = mu Tw/(E kappa_c L) (3.3),
 whatever the strength: above a line through the origin of the plane of Tw and kappa_c rods break into more
-than two pieces. The strength says where along that line the rod is. Fragments shorter than lambda do not occur,
-so that a rod also breaks in two where lambda >= L/4.
+than two pieces. The strength says where along that line the rod is. No fragment is shorter than lambda, so a
+rod also breaks in two where lambda >= L/4.
 """
 
 from __future__ import annotations

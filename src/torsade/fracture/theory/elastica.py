@@ -18,12 +18,15 @@ from scipy.special import ellipe, ellipj, ellipk
 
 from torsade.errors import TorsadeError, quoted
 
-__all__ = ["Elastica", "curvature_at", "elastica"]
+__all__ = ["Elastica", "curvature_at", "elastica", "elastica_of_curvature", "largest_curvature"]
 
 Floats = NDArray[np.float64]
 
-NARROWEST = -0.9
+NARROWEST = -0.7
 """Smallest end-to-end distance over length that is followed: far beyond the ends' meeting at 0."""
+
+MOST = 1.0 - 1e-5
+"""Largest parameter k^2 of a shape."""
 
 
 class Elastica(NamedTuple):
@@ -63,9 +66,35 @@ def elastica(length: float, distance: float) -> Elastica:
             f"an end-to-end distance of {quoted(distance)} m does not go with a rod of {length:g} m; give "
             f"one from {NARROWEST * length:.3g} to {length:g} m"
         )
-    parameter = 0.0 if ratio == 1.0 else brentq(lambda m: _ratio(m) - ratio, 0.0, 1.0 - 1e-12, xtol=1e-15)
+    parameter = 0.0 if ratio == 1.0 else brentq(lambda m: _ratio(m) - ratio, 0.0, MOST, xtol=1e-15)
+    return _of(length, parameter)
+
+
+def elastica_of_curvature(length: float, kappa: float) -> Elastica:
+    """The shape with that curvature [1/m] at its middle, at most `largest_curvature`.
+
+    Raises
+    ------
+    TorsadeError
+        When the curvature is larger.
+    """
+    if not 0.0 <= kappa <= largest_curvature(length):
+        raise TorsadeError(
+            f"a curvature of {quoted(kappa)} 1/m is not one of a rod of {length:g} m with pivoting ends; "
+            f"give one from 0 to {largest_curvature(length):.3g} 1/m"
+        )
+    target = kappa * length / 4.0
+    return _of(length, brentq(lambda k: k * float(ellipk(k * k)) - target, 0.0, 1.0 - 1e-7) ** 2)
+
+
+def largest_curvature(length: float) -> float:
+    """Of the most bent shape that is followed [1/m]."""
+    return 4.0 * math.sqrt(MOST) * float(ellipk(MOST)) / length
+
+
+def _of(length: float, parameter: float) -> Elastica:
     k, K = math.sqrt(parameter), float(ellipk(parameter))
-    return Elastica(length, distance, k, 4.0 * k * K / length, (2.0 * K / math.pi) ** 2)
+    return Elastica(length, length * _ratio(parameter), k, 4.0 * k * K / length, (2.0 * K / math.pi) ** 2)
 
 
 def curvature_at(length: float, distance: float, error: float = 0.0) -> tuple[float, float]:
