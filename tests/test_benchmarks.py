@@ -46,6 +46,7 @@ SCRIPTS = (
     "tight",
     "building",
     "variants",
+    "chapter4",
     "tails",
 )
 

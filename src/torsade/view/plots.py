@@ -78,7 +78,7 @@ def plot_separation(dataset: xarray.Dataset, path: str | Path) -> Path:
                 bbox=box,
             )
         _title(axes[0], dataset)
-        return _save(figure, path)
+        return save(figure, path)
 
 
 def plot_tightening(dataset: xarray.Dataset, path: str | Path) -> Path:
@@ -99,7 +99,7 @@ def plot_tightening(dataset: xarray.Dataset, path: str | Path) -> Path:
     with require("matplotlib").rc_context(STYLE):
         figure, axes = _stack(dataset, panels)
         _title(axes[0], dataset)
-        return _save(figure, path)
+        return save(figure, path)
 
 
 def _require(dataset: xarray.Dataset, *names: str) -> None:
@@ -147,7 +147,8 @@ def _title(axis: Any, dataset: xarray.Dataset) -> None:
         axis.set_title(",  ".join(parts))
 
 
-def _save(figure: Any, path: str | Path) -> Path:
+def save(figure: Any, path: str | Path) -> Path:
+    """Write a matplotlib figure to a file (png, pdf, svg), or say why that cannot be done."""
     path = Path(path)
     if path.suffix.lower() not in ENDINGS:
         raise TorsadeError(f"cannot plot to {str(path)!r}; give a name that ends in {' or '.join(ENDINGS)}")
