@@ -34,6 +34,8 @@ OPTIONS: dict[str, tuple[type, str]] = {
 
 EXAMPLES = {
     "prison-escape": '--knot reef --force "15 N" --out reef.zarr --picture reef.png',
+    "pendulum": '--turn "45 deg" --mass "20 g" --out pendulum.zarr --plot pendulum.png',
+    "snap-quench": '--speed "100 mm/s" --disorder 0.05 --seed 1 --out quench.zarr --plot quench.png',
     "snap-twist": '--twist "270 deg" --out snap.zarr --plot snap.png',
     "tighten": '--knot overhand --force "20 mN" --out overhand.zarr --picture overhand.png',
 }
@@ -102,7 +104,8 @@ def build(arguments: list[str]) -> App:
     app.command(_figure, name="figure", help_epilogue=FIGURE_EXAMPLES, version_flags=[])
     run = App(
         name="run",
-        help="Run an experiment: prison-escape (pull a bend) or tighten (pull a knot in one strand).",
+        help="Run an experiment: prison-escape (pull a bend), tighten (pull a knot in one strand), snap-twist "
+        "(break a twisted rod), snap-quench (break a rod at speed) or pendulum (a mass that turns on a rod).",
         help_epilogue="See the options with: torsade run prison-escape --help",
         version_flags=[],
     )

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 __all__ = ["check_drawings", "demo", "progress", "run"]
 
+BREAKING = ("snap-twist", "snap-quench")
+"""Protocols whose results are drawn in pieces."""
+
 INSTALL_VIEW = 'pip install "torsade[view]"'
 
 
@@ -190,16 +193,25 @@ def _draw(result: Result, out: str | None, picture: str | None, plot: str | None
 
 
 def _picture(result: Result, path: str) -> None:
+    if result.protocol in BREAKING:
+        from torsade.view.cascade import draw_pieces
+
+        draw_pieces(result.dataset, path)
+        return
     from torsade.view.scene import render_result
 
     render_result(result.dataset, path, frame=result.last_held)
 
 
 def _plot(result: Result, path: str) -> None:
-    from torsade.view.plots import plot_separation, plot_tightening
+    from torsade.view import cascade, plots
 
-    plot = plot_separation if result.protocol == "prison-escape" else plot_tightening
-    plot(result.dataset, path)
+    draw = {
+        "prison-escape": plots.plot_separation,
+        **dict.fromkeys(BREAKING, cascade.plot_cascade),
+        "pendulum": plots.plot_swing,
+    }.get(result.protocol, plots.plot_tightening)
+    draw(result.dataset, path)
 
 
 def _print(result: Result, out: str | None, json: bool) -> None:

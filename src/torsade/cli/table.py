@@ -20,7 +20,12 @@ WIDTH = 24
 
 def print_table(result: Result, report: dict[str, Any]) -> None:
     """Print what was done and what came of it."""
-    print_rows((*_asked(result), *_found(result, report), *_spent(report)))
+    from torsade.cli.rods_table import ROWS
+
+    if result.protocol in ROWS:
+        print_rows(ROWS[result.protocol](result, report))
+    else:
+        print_rows((*_asked(result), *_found(result, report), *_spent(report)))
 
 
 def print_file(what: str, path: str) -> None:

@@ -80,8 +80,8 @@ class Inertial:
     Parameters
     ----------
     step : [s]; by default `STEP`, or `SAFETY` times the longest stable one where that is less
-    attached_moment : (n_edges,) moments of inertia of what turns along with edges [kg m^2], by default none;
-        damping acts on the fiber alone
+    attached_moment : (n_edges,) moments of inertia of what turns along with edges [kg m^2], by default none
+    damped_moment : (n_edges,) moments of what is damped [kg m^2], by default those of the fiber
 
     Raises
     ------
@@ -100,6 +100,7 @@ class Inertial:
         *,
         tolerance: float = TOLERANCE,
         attached_moment: Floats | None = None,
+        damped_moment: Floats | None = None,
     ) -> None:
         if assembly.closed.any():
             raise TorsadeError(
@@ -121,7 +122,9 @@ class Inertial:
         self.inertia = verlet.Inertia(
             material.rho * section.A * assembly.node_length,
             total,
-            np.exp(-material.twist_damping * dt * moment / total),
+            np.exp(
+                -material.twist_damping * dt * (moment if damped_moment is None else damped_moment) / total
+            ),
         )
         self.boundary = boundary
         self.state = state.copy()

@@ -44,7 +44,7 @@ class SnapTwist(Breakable):
         from torsade.protocols.pieces import NAMES, PieceFrames
 
         cascade, at_limit = self.broken()
-        most = most_breaks(cascade.motion.assembly, self.min_fragment)
+        most = most_breaks(cascade.motion.assembly, self.least_fragment)
         frames = PieceFrames(cascade, max(most, 1), grips=1)
         return Trial(
             cascade,

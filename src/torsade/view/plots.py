@@ -102,6 +102,26 @@ def plot_tightening(dataset: xarray.Dataset, path: str | Path) -> Path:
         return save(figure, path)
 
 
+def plot_swing(dataset: xarray.Dataset, path: str | Path) -> Path:
+    """Plot the angle and the energy of a torsion pendulum against time.
+
+    Parameters
+    ----------
+    dataset : coordinate `time` [s], variables `angle (time)` [rad], `energy_spin` and `energy_twist (time)` [J]
+    path : the file to write; its ending chooses the format (png, pdf, svg)
+    """
+    _require(dataset, "angle", "energy_spin", "energy_twist")
+    energy = _values(dataset, "energy_spin") + _values(dataset, "energy_twist")
+    panels = [
+        ("angle (deg)", np.degrees(_values(dataset, "angle"))),
+        ("energy, share of the first", energy / energy[0]),
+    ]
+    with require("matplotlib").rc_context(STYLE):
+        figure, axes = _stack(dataset, panels)
+        axes[1].set_ylim(bottom=0.0)
+        return save(figure, path)
+
+
 def _require(dataset: xarray.Dataset, *names: str) -> None:
     missing = [name for name in ("time", *names) if name not in dataset.variables]
     if missing:
