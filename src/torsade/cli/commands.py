@@ -43,6 +43,8 @@ def run(
 ) -> int:
     """Run one specification: the fields of a file, and those given in their place."""
     wanted = _read(protocol, given, spec)
+    if picture is not None and not protocol.pictured:
+        raise TorsadeError(f"{wanted.protocol} has nothing to be pictured; give --plot in place of --picture")
     check_drawings(picture, plot)
     result = _run(wanted, out, resume, overwrite, json)
     _print(result, out, json)

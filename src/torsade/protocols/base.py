@@ -50,6 +50,9 @@ class Spec(BaseModel, ABC):
     }
     """What to say to those who give a field that this protocol does not have."""
 
+    pictured: ClassVar[bool] = True
+    """Whether there is a picture to draw of a result."""
+
     protocol: str
     material: str = Field(
         "nylon", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
@@ -211,7 +214,7 @@ class Driven(Spec):
 
     @abstractmethod
     def meaning(self) -> dict[str, Any]:
-        """The numbers behind the names in the specification, which another version may understand otherwise."""
+        """The numbers behind names in the specification, which another version may understand otherwise."""
 
     @abstractmethod
     def trial(self) -> Trial:

@@ -38,6 +38,8 @@ class Pendulum(Rod):
         "inertia": "there is no field 'inertia'; give 'mass' and 'mass_radius' of the cylinder",
     }
 
+    pictured: ClassVar[bool] = False
+
     protocol: Literal["pendulum"] = "pendulum"
     mass: Annotated[Mass, Positive] = Field(0.02, description="Mass of the cylinder.", examples=["20 g"])
     mass_radius: Annotated[Length, Positive] = Field(

@@ -64,7 +64,7 @@ class Rod(Driven):
 
     @property
     def fiber_material(self) -> Material:
-        """The named material with the constants that are given in place of its own; E is E_b if that is not."""
+        """The named material with constants given in place of its own; E is E_b too if that is not given."""
         material = super().fiber_material
         return (
             material if self.E is None or self.E_b is not None else dataclasses.replace(material, E_b=self.E)
@@ -74,8 +74,8 @@ class Rod(Driven):
         """Refuse a rod that is thicker than rod theory allows."""
         if self.length < 20 * self.h:
             raise TorsadeError(
-                f"a rod of length {1e3 * self.length:.4g} mm and radius {1e3 * self.h:.4g} mm is too thick to be "
-                "a rod; give a length of at least 20 radii"
+                f"a rod of length {1e3 * self.length:.4g} mm and radius {1e3 * self.h:.4g} mm is too thick to "
+                "be a rod; give a length of at least 20 radii"
             )
 
     def check_step(self, steps_of: float) -> None:
@@ -105,8 +105,8 @@ class Breakable(Rod):
 
     sigma_c: Annotated[Pressure, Positive] = Field(
         1.9e7,
-        description="Stress sigma_c at which the rod breaks by the criterion effective; other criteria get the "
-        "strength that gives the same limit curvature without twist.",
+        description="Stress sigma_c at which the rod breaks by the criterion effective; other criteria get "
+        "the strength that gives the same limit curvature without twist.",
         examples=["19 MPa"],
     )
     criterion: Literal[
@@ -149,7 +149,7 @@ class Breakable(Rod):
 
     @property
     def wave_time(self) -> float:
-        """When the greatest bending of the wave from a break in the middle reaches the ends (thesis 3.21) [s]."""
+        """When the peak of the bending wave from a break in the middle reaches the ends (thesis 3.21) [s]."""
         from torsade.fracture.rod import Rod as BrokenRod
         from torsade.fracture.theory.scales import bending_time
 

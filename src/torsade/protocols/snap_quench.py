@@ -93,7 +93,9 @@ class SnapQuench(Breakable):
     def trial(self) -> Trial:
         from torsade.fracture.cascade import most_breaks
         from torsade.protocols.pieces import NAMES, PieceFrames
+        from torsade.protocols.shapes import check_frames
 
+        check_frames(self.frames + 1, self.edges + 1)
         cascade = self.driven()
         most = most_breaks(cascade.motion.assembly, self.least_fragment)
         frames = PieceFrames(cascade, max(most, 1) + 1)

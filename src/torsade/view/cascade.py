@@ -29,6 +29,9 @@ BEFORE = 0.15
 MOMENTS = 4
 """Moments that a picture shows."""
 
+DISTINCT = 5
+"""Colours after which pieces begin anew: the others are too pale."""
+
 THICKER = 3.0
 """How much thicker than to scale the rod is drawn, as in the thesis."""
 
@@ -125,22 +128,22 @@ def draw_pieces(dataset: xarray.Dataset, path: str | Path) -> Path:
     low, high = seen.min(axis=0), seen.max(axis=0)
     margin = 0.04 * (high[0] - low[0])
     wide, tall = high[0] - low[0] + 2 * margin, max(high[1] - low[1], 0.1 * (high[0] - low[0])) + 2 * margin
-    inches = 5.0
-    points = 72 * inches / wide  # per millimetre
+    inches = 3.2
+    width = 72 * inches / wide * 2e3 * float(dataset.attrs["radius"]) * THICKER  # points
     with require("matplotlib").rc_context(STYLE):
-        figure = require("matplotlib.figure").Figure(figsize=(inches, MOMENTS * inches * tall / wide))
-        for row, (frame, pieces) in enumerate(zip(frames, shapes, strict=True)):
-            axis = figure.add_axes((0.0, 1 - (row + 1) / MOMENTS, 1.0, 1 / MOMENTS))
+        rows = MOMENTS // 2
+        figure = require("matplotlib.figure").Figure(figsize=(2 * inches, rows * inches * tall / wide))
+        for k, (frame, pieces) in enumerate(zip(frames, shapes, strict=True)):
+            axis = figure.add_axes((k % 2 / 2, 1 - (k // 2 + 1) / rows, 0.5, 1 / rows))
             axis.set(
                 xlim=(low[0] - margin, high[0] + margin), ylim=(high[1] + margin - tall, high[1] + margin)
             )
             axis.set_axis_off()
-            width = 2e3 * float(dataset.attrs["radius"]) * THICKER * points
-            for k, x in enumerate(pieces):
-                colour = STRAND_COLOURS[k % 5]
+            for p, x in enumerate(pieces):
+                colour = STRAND_COLOURS[p % DISTINCT]
                 axis.plot(x[:, 0], x[:, 1], color=colour, linewidth=width, solid_capstyle="butt")
             note = f"{1e3 * (time[frame] - begin):.2f} ms"
-            axis.text(0.02, 0.06, note, transform=axis.transAxes, color=INK, fontsize=9.0)
+            axis.text(0.5, 0.08, note, transform=axis.transAxes, color=INK, ha="center")
         return save(figure, path)
 
 
