@@ -208,12 +208,14 @@ def _picture(result: Result, path: str) -> None:
 def _plot(result: Result, path: str) -> None:
     from torsade.view import cascade, plots
 
-    draw = {
+    by_protocol = {
         "prison-escape": plots.plot_separation,
-        **dict.fromkeys(BREAKING, cascade.plot_cascade),
+        "tighten": plots.plot_tightening,
+        "reidemeister": plots.plot_move,
         "pendulum": plots.plot_swing,
-    }.get(result.protocol, plots.plot_tightening)
-    draw(result.dataset, path)
+        **dict.fromkeys(BREAKING, cascade.plot_cascade),
+    }
+    by_protocol[result.protocol](result.dataset, path)
 
 
 def _print(result: Result, out: str | None, json: bool) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json as json_format
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 from torsade.errors import QuantityError, TorsadeError, counted, quoted

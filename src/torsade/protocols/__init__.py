@@ -6,8 +6,19 @@ from torsade.protocols.base import Spec
 from torsade.protocols.files import PROTOCOLS, load_spec
 from torsade.protocols.pendulum import Pendulum
 from torsade.protocols.prison_escape import PrisonEscape
+from torsade.protocols.reidemeister import Reidemeister
 from torsade.protocols.snap_quench import SnapQuench
 from torsade.protocols.snap_twist import SnapTwist
 from torsade.protocols.tighten import Tighten
 
-__all__ = ["PROTOCOLS", "Pendulum", "PrisonEscape", "SnapQuench", "SnapTwist", "Spec", "Tighten", "load_spec"]
+__all__ = [
+    "PROTOCOLS",
+    "Pendulum",
+    "PrisonEscape",
+    "Reidemeister",
+    "SnapQuench",
+    "SnapTwist",
+    "Spec",
+    "Tighten",
+    "load_spec",
+]

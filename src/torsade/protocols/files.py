@@ -17,6 +17,7 @@ from torsade.errors import TorsadeError, reason_of
 from torsade.protocols.base import Spec
 from torsade.protocols.pendulum import Pendulum
 from torsade.protocols.prison_escape import PrisonEscape
+from torsade.protocols.reidemeister import Reidemeister
 from torsade.protocols.snap_quench import SnapQuench
 from torsade.protocols.snap_twist import SnapTwist
 from torsade.protocols.tighten import Tighten
@@ -27,6 +28,7 @@ PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
     {
         "prison-escape": PrisonEscape,
         "tighten": Tighten,
+        "reidemeister": Reidemeister,
         "snap-twist": SnapTwist,
         "snap-quench": SnapQuench,
         "pendulum": Pendulum,
