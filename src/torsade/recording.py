@@ -17,9 +17,7 @@ from numpy.typing import NDArray
 
 from torsade import __version__, places, store
 from torsade.arrays import Floats
-from torsade.assembly import Assembly, State
 from torsade.errors import TorsadeError, counted, quoted
-from torsade.motion.overdamped import Checkpoint
 from torsade.results import Result
 
 __all__ = ["SAMPLE", "VARIABLES", "Recording"]
@@ -48,16 +46,31 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "dissipation": (("time",), "J", "energy lost to drag since the start"),
     "position": (("time", "node", "space"), "m", "node positions"),
     "log_strain": (("time", "node"), "", "log(1 + sqrt(eps:eps)) on the surface"),
+    "end_distance": (("time",), "m", "distance of the two ends of the rod"),
+    "kappa_max": (("time",), "1/m", "largest curvature"),
+    "energy_kinetic": (("time",), "J", "kinetic energy of the centerline"),
+    "energy_spin": (("time",), "J", "kinetic energy of spin"),
+    "energy_released": (("time",), "J", "energy lost in breaks since the start"),
+    "piece_start": (
+        ("time", "piece_bound"),
+        "",
+        "first node of every piece; empty where pieces are not there",
+    ),
+    "kappa": (("time", "node"), "1/m", "curvature, 0 at ends"),
+    "twist_density": (("time", "node"), "rad/m", "twist density, 0 at ends"),
+    "stress": (("time", "node"), "Pa", "stress by the criterion chosen, 0 at ends"),
+    "angle": (("time",), "rad", "angle that the lower end has turned"),
+    "sample_angle": (("sample",), "rad", "angle at the times of samples"),
 }
 """Dimensions, SI unit and meaning of every recorded variable."""
 
-SINGLE_PRECISION = ("position", "log_strain")
+SINGLE_PRECISION = ("position", "log_strain", "kappa", "twist_density", "stress")
 
 SAMPLE = "sample_"
 """Beginning of the names of samples."""
 
-CLOCK = ("clock_time", "clock_counts", "done", "sampled", "wall")
-"""What the restart file holds besides the state."""
+PROGRESS = ("done", "sampled", "wall", "steps")
+"""What the restart file holds besides what the motion saves."""
 
 Frame = Mapping[str, "float | Floats"]
 
@@ -68,22 +81,20 @@ class Recording:
     Attributes
     ----------
     done, sampled : frames and samples recorded
-    checkpoint : state and clock at the last of them, None before the first
+    saved : all that decides how the motion goes on after the last of them, None before the first
     wall : computing time so far [s]
     complete : whether there is nothing left to do
     part : the growing folder on disk, under a name of its own until it holds a frame, or None
     """
 
     def __init__(
-        self, assembly: Assembly, frames: int, samples: int, names: tuple[str, ...], attrs: dict[str, Any]
+        self,
+        sizes: Mapping[str, int],
+        fixed: Mapping[str, tuple[str, NDArray[Any]]],
+        names: tuple[str, ...],
+        attrs: dict[str, Any],
     ) -> None:
-        sizes = {
-            "time": frames,
-            "sample": samples,
-            "fiber": len(assembly.closed),
-            "node": len(assembly.node_length),
-            "space": 3,
-        }
+        sizes = {"space": 3, **sizes}
         self._arrays: dict[str, NDArray[Any]] = {
             name: np.full(
                 [sizes[d] for d in VARIABLES[name][0]],
@@ -92,13 +103,11 @@ class Recording:
             )
             for name in names
         }
-        self._fixed = {
-            "node_start": ("fiber_bound", assembly.node_start.copy()),
-            "closed": ("fiber", assembly.closed.copy()),
-        }
+        self._fixed = dict(fixed)
         self.attrs = attrs | {"created": _now(), "versions": _versions(), "status": "running"}
         self.done = self.sampled = 0
-        self.checkpoint: Checkpoint | None = None
+        self.saved: dict[str, NDArray[Any]] | None = None
+        self._restart: tuple[str, ...] = ()
         self.complete = False
         self.wall = 0.0
         self._steps = 0
@@ -112,12 +121,12 @@ class Recording:
     @classmethod
     def begin(
         cls,
-        assembly: Assembly,
-        frames: int,
-        samples: int,
+        sizes: Mapping[str, int],
+        fixed: Mapping[str, tuple[str, NDArray[Any]]],
         names: tuple[str, ...],
         attrs: dict[str, Any],
         derive: Callable[[dict[str, Floats]], dict[str, Floats]],
+        restart: tuple[str, ...],
         out: str | Path | None,
         *,
         resume: bool,
@@ -126,10 +135,11 @@ class Recording:
         """A new recording, or with resume the one that an interrupted run of the same left at `out`.
 
         Close it when the run ends, however it does. attrs must hold all that tells one run from another;
-        derive gives the histories that follow from those recorded.
+        sizes are those of the dimensions, frames (time) and samples (sample) among them; derive gives the
+        histories that follow from those recorded; restart names the arrays that the motion saves.
         """
-        recording = cls(assembly, frames, samples, names, attrs)
-        recording._derive = derive
+        recording = cls(sizes, fixed, names, attrs)
+        recording._derive, recording._restart = derive, restart
         if out is None:
             if resume:
                 raise TorsadeError(
@@ -184,12 +194,11 @@ class Recording:
             store.complete(part, self._out, {}, {})
             self.complete = True
         elif store.has_restart(part):
-            saved = store.read_restart(part, (*State._fields, *CLOCK))
+            saved = store.read_restart(part, (*self._restart, *PROGRESS))
             self.done, self.sampled = self._written = int(saved["done"]), int(saved["sampled"])
             self.wall = float(saved["wall"])
-            state = State(*(saved[name] for name in State._fields))
-            self.checkpoint = Checkpoint(state, saved["clock_time"], saved["clock_counts"])
-            self._steps = int(self.checkpoint.counts[0])
+            self._steps = int(saved["steps"])
+            self.saved = {name: saved[name] for name in self._restart}
             store.set_attributes(part, self._progress())
             self._read(part)
         elif int(found["done"]) == len(self._arrays["time"]):  # only the end is missing
@@ -219,10 +228,9 @@ class Recording:
             self._arrays[SAMPLE + name][self.sampled] = value
         self.sampled += 1
 
-    def keep(self, checkpoint: Checkpoint, wall: float) -> None:
-        """Hold the state behind what was recorded last, and the computing time so far [s]."""
-        self.checkpoint, self.wall = checkpoint, wall
-        self._steps = int(checkpoint.counts[0])
+    def keep(self, saved: dict[str, NDArray[Any]], steps: int, wall: float) -> None:
+        """Hold what the motion saved behind what was recorded last, its steps and the computing time [s]."""
+        self.saved, self._steps, self.wall = saved, steps, wall
         if time.monotonic() - self._flushed > FLUSH_EVERY:
             self.flush()
 
@@ -255,15 +263,14 @@ class Recording:
         if self.done:
             for name, values in self._derive(self.histories()).items():
                 self._arrays[name][: self.done] = values
-        if self.part is None or self.checkpoint is None:
+        if self.part is None or self.saved is None:
             return
         frames = {name: a for name, a in self._arrays.items() if not name.startswith(SAMPLE)}
         store.append(self.part, frames, self._written[0], self.done)
         samples = {name: a for name, a in self._arrays.items() if name.startswith(SAMPLE)}
         store.append(self.part, samples, self._written[1], self.sampled)
-        clock = {"clock_time": self.checkpoint.time, "clock_counts": self.checkpoint.counts}
-        progress = {name: np.array(getattr(self, name)) for name in ("done", "sampled", "wall")}
-        store.write_restart(self.part, self.checkpoint.state._asdict() | clock | progress)
+        progress = {name: np.array(value) for name, value in self._progress().items() if name in PROGRESS}
+        store.write_restart(self.part, self.saved | progress | {"wall": np.array(self.wall)})
         store.set_attributes(self.part, self._progress())
         self._settle()
         self._written = self.done, self.sampled
@@ -286,8 +293,8 @@ class Recording:
         finally:
             self._discard()
 
-    def finish(self, numbers: Mapping[str, float]) -> Result:
-        """The result of a run that came to its end, with the numbers that belong to it as a whole."""
+    def finish(self, numbers: Mapping[str, Any]) -> Result:
+        """The result of a run that came to its end, with what belongs to it as a whole."""
         self.flush()
         self.attrs.update({"status": "complete"} | dict(numbers))
         self.attrs.update(self._progress())

@@ -153,7 +153,7 @@ class Result:
     def __repr__(self) -> str:
         attrs = self._dataset.attrs
         last = float(self._dataset["time"][-1]) if self.frames else 0.0
-        return f"<Result of {attrs['protocol']} on {attrs['knot']}: {self.frames} frames to t = {last:.4g} s>"
+        return f"<Result of {attrs['protocol']} on {attrs.get('knot', 'a rod')}: {self.frames} frames to t = {last:.4g} s>"
 
 
 def open_result(path: str | Path) -> Result:

@@ -33,6 +33,7 @@ __all__ = [
     "Dimension",
     "Force",
     "Length",
+    "Mass",
     "Number",
     "Pressure",
     "Rate",
@@ -304,6 +305,7 @@ Rate = Annotated[float, _reads("rate"), DIMENSIONS["rate"]]
 Angle = Annotated[float, _reads("angle"), DIMENSIONS["angle"]]
 AngularVelocity = Annotated[float, _reads("angular velocity"), DIMENSIONS["angular velocity"]]
 Density = Annotated[float, _reads("density"), DIMENSIONS["density"]]
+Mass = Annotated[float, _reads("mass"), DIMENSIONS["mass"]]
 Force = Annotated[float, _reads("force"), DIMENSIONS["force"]]
 Torque = Annotated[float, _reads("torque"), DIMENSIONS["torque"]]
 Pressure = Annotated[float, _reads("pressure"), DIMENSIONS["pressure"]]

@@ -35,6 +35,7 @@ OPTIONS: dict[str, tuple[type, str]] = {
 
 EXAMPLES = {
     "prison-escape": '--knot reef --force "15 N" --out reef.zarr --picture reef.png',
+    "snap-twist": '--twist "270 deg" --out snap.zarr --plot snap.png',
     "tighten": '--knot overhand --force "20 mN" --out overhand.zarr --picture overhand.png',
 }
 

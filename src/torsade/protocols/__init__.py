@@ -5,6 +5,8 @@ from __future__ import annotations
 from torsade.protocols.base import Spec
 from torsade.protocols.files import PROTOCOLS, load_spec
 from torsade.protocols.prison_escape import PrisonEscape
+from torsade.protocols.snap_quench import SnapQuench
+from torsade.protocols.snap_twist import SnapTwist
 from torsade.protocols.tighten import Tighten
 
-__all__ = ["PROTOCOLS", "PrisonEscape", "Spec", "Tighten", "load_spec"]
+__all__ = ["PROTOCOLS", "PrisonEscape", "SnapQuench", "SnapTwist", "Spec", "Tighten", "load_spec"]

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, field_validator, model_validator
 
 from torsade.errors import TorsadeError
-from torsade.protocols.base import Experiment, Positive, Spec
+from torsade.protocols.base import Positive
+from torsade.protocols.pulled import Experiment, Pulled
 from torsade.units import Force, Length
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ _AXES = {"x": 0, "y": 1, "z": 2}
 _ENDS = re.compile(r"([AB])([01])([AB])([01])")
 
 
-class PrisonEscape(Spec):
+class PrisonEscape(Pulled):
     """Pull a bend by one end while another is clamped, and see how fast it gives way.
 
     Strand 0 of a centerline file is A, strand 1 is B; end 0 of a strand is its first node, end 1 its
@@ -35,7 +36,7 @@ class PrisonEscape(Spec):
     """
 
     hints: ClassVar[Mapping[str, str]] = {
-        **Spec.hints,
+        **Pulled.hints,
         "bend": "there is no field 'bend'; did you mean 'knot'?",
         "name": "there is no field 'name'; did you mean 'knot'?",
         "length": "there is no field 'length'; a built-in knot takes 'lead', a centerline has its own",

@@ -10,7 +10,7 @@ from torsade.errors import TorsadeError
 from torsade.files import read_centerline
 
 if TYPE_CHECKING:
-    from torsade.protocols.base import Spec
+    from torsade.protocols.pulled import Pulled
 
 __all__ = ["check_built", "check_count", "check_frames", "open_strands"]
 
@@ -21,7 +21,7 @@ LARGEST_RESULT = 4_000_000_000
 """Most that positions and strains of all frames may take in memory [bytes]."""
 
 
-def open_strands(path: str, spec: Spec, strands: int, wanted: str) -> Centerline:
+def open_strands(path: str, spec: Pulled, strands: int, wanted: str) -> Centerline:
     """Open strands from a file, checked as given, then resampled as the specification wants."""
     shape = read_centerline(path, spec.length_unit or "m")
     if len(shape.strands) != strands:
@@ -44,7 +44,7 @@ def open_strands(path: str, spec: Spec, strands: int, wanted: str) -> Centerline
     return resampled
 
 
-def _smoothed(shape: Centerline, scale: float, spec: Spec) -> Centerline:
+def _smoothed(shape: Centerline, scale: float, spec: Pulled) -> Centerline:
     """A measured shape without its noise, at the resolution of the run; never less smooth than asked for."""
     from torsade.knots.measured import clean
 

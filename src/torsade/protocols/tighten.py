@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from torsade.protocols.base import Experiment, Positive, Spec
+from torsade.protocols.base import Positive
+from torsade.protocols.pulled import Experiment, Pulled
 from torsade.units import Force
 
 if TYPE_CHECKING:
@@ -18,14 +19,14 @@ if TYPE_CHECKING:
 __all__ = ["Tighten"]
 
 
-class Tighten(Spec):
+class Tighten(Pulled):
     """Pull the two ends of one knotted strand apart, along -x and +x, each with the same force.
 
     The end with the smaller x is pulled along -x.
     """
 
     hints: ClassVar[Mapping[str, str]] = {
-        **Spec.hints,
+        **Pulled.hints,
         "bend": "tighten pulls a knot in one strand; give a knot such as 'overhand', or run prison-escape",
         "length": "there is no field 'length'; a centerline is as long as given",
         "lead": "there is no field 'lead'; a built-in knot has the ends that it has, and so has a centerline",
