@@ -99,6 +99,7 @@ DIMENSIONS: Mapping[str, Dimension] = MappingProxyType(
             Dimension("force", "N", (1, 1, -2, 0), "15 N"),
             Dimension("torque", "N m", (2, 1, -2, 0), "3 mN mm"),
             Dimension("energy", "J", (2, 1, -2, 0), "3 mJ"),
+            Dimension("moment of inertia", "kg m^2", (2, 1, 0, 0), "2 kg mm^2"),
             Dimension("pressure", "Pa", (-1, 1, -2, 0), "1 GPa"),
             Dimension("viscosity", "Pa s", (-1, 1, -1, 0), "1e5 Pa s"),
         )

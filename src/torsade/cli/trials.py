@@ -19,7 +19,7 @@ from torsade.fracture.trials import Trials, read_trials
 from torsade.material import named_material
 from torsade.units import quantity
 
-__all__ = ["report", "trials"]
+__all__ = ["number_of", "report", "trials"]
 
 RAYS = ("ellipse", "printed")
 
@@ -39,7 +39,9 @@ def trials(
 ) -> int:
     """Read, analyse, print."""
     rod = Rod.of(
-        named_material(material), h=_of("--radius", radius, "length"), L=_of("--length", length, "length")
+        named_material(material),
+        h=number_of("--radius", radius, "length"),
+        L=number_of("--length", length, "length"),
     )
     if criterion not in CRITERIA:
         raise TorsadeError(f"--criterion is {quoted(criterion)}; give one of {', '.join(CRITERIA)}")
@@ -47,19 +49,19 @@ def trials(
         raise TorsadeError(f"--rays is {quoted(rays)}; give one of {' or '.join(RAYS)}")
     if not re.fullmatch(r"[1-9]\d{0,2}", sectors, re.A):
         raise TorsadeError(f"--sectors is {quoted(sectors)}; give a whole number from 1 to 999")
-    C = AMPLIFICATION if amplification is None else _of("--amplification", amplification, "number")
+    C = AMPLIFICATION if amplification is None else number_of("--amplification", amplification, "number")
     if C < 1:
         raise TorsadeError(f"--amplification is {C:g}; give 1 or more, such as 1.5")
     read = read_trials(file, rod)
     found = analyse(
         read.trials,
         rod,
-        _of("--strength", strength, "pressure"),
+        number_of("--strength", strength, "pressure"),
         criterion=criterion,  # type: ignore[arg-type]
         C=C,
         count=int(sectors),
         rays=rays,  # type: ignore[arg-type]
-        slow=math.inf if slow is None else _of("--slow", slow, "velocity"),
+        slow=math.inf if slow is None else number_of("--slow", slow, "velocity"),
     )
     if json:
         print(json_format.dumps(report(file, read, rod, found), allow_nan=False), flush=True)
@@ -68,8 +70,8 @@ def trials(
     return 0
 
 
-def _of(option: str, text: str, dimension: str) -> float:
-    """The value of an option, above 0."""
+def number_of(option: str, text: str, dimension: str) -> float:
+    """The value of an option, above 0, in SI units."""
     try:
         value = quantity(text, dimension)
     except QuantityError as error:
@@ -249,10 +251,8 @@ def _rows(file: str, read: Trials, found: Analysis) -> Iterator[tuple[str, str]]
     yield "binary threshold", f"{math.degrees(at.twist):.0f} degrees at {at.kappa:.2f} 1/m, Li {at.li:.3f}"
     for name, part in (("above", found.beyond), ("below", found.before)):
         if part is not None:
-            yield (
-                f"in two, Li {name} it",
-                f"{part.k} of {part.n} ({100 * part.low:.0f} to {100 * part.high:.0f} %)",
-            )
+            interval = f"95 % interval {100 * part.low:.0f} to {100 * part.high:.0f} %"
+            yield f"in two, Li {name} it", f"{part.k} of {part.n}; {interval}"
     yield from _fit_rows(found)
 
 

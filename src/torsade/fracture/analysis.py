@@ -1,6 +1,6 @@
-"""What a file of trials says: each trial, trials of one speed, sectors of the plane of twist and curvature, fits.
+"""What a file of trials says: each trial, trials of one speed, sectors of twist and curvature, fits.
 
-Numbers per speed, and the fits to them, are of rods that were not twisted: twist changes the number of pieces too.
+Numbers per speed, and the fits to them, are of rods that were not twisted: twist changes the pieces too.
 """
 
 from __future__ import annotations

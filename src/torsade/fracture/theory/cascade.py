@@ -2,10 +2,10 @@
 
 The rod is bent until somewhere the stress reaches the strength there, and breaks. From every new end a
 bending wave runs towards the gripped end of its half. Where it passes it raises the curvature C times, and
-the rod breaks at the first place where that is enough without twist, and which is at least lambda from the new
-end and more than lambda from the grip; the wave of the next new end follows. Pieces between two breaks are
-left alone. In this picture waves do not add up and nothing comes back from the grips; the full equations have
-both.
+the rod breaks at the first place where that is enough without twist, and which is at least lambda from the
+new end and more than lambda from the grip; the wave of the next new end follows. Pieces between two breaks
+are left alone. In this picture waves do not add up and nothing comes back from the grips; the full equations
+have both.
 
 With C = 1.5 the thesis's rods break into 6 pieces up to 60 degrees of twist, into 4 from 80 to 240 and into 2
 from 250.
