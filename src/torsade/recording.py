@@ -38,6 +38,7 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "total_twist": (("time",), "rad", "twist of the fiber"),
     "max_log_strain": (("time",), "", "largest log(1 + sqrt(eps:eps))"),
     "twist": (("time", "fiber"), "rad", "twist of each fiber"),
+    "curvature": (("time", "node"), "1/m", "curvature of the centerline"),
     "energy_stretch": (("time",), "J", "stretch energy"),
     "energy_bend": (("time",), "J", "bending energy"),
     "energy_twist": (("time",), "J", "twist energy"),

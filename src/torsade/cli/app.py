@@ -34,6 +34,7 @@ OPTIONS: dict[str, tuple[type, str]] = {
 
 EXAMPLES = {
     "prison-escape": '--knot reef --force "15 N" --out reef.zarr --picture reef.png',
+    "bend-twist": '--length "24 cm" --end-distance "19 cm" --twist "270 deg" --plot bent.png',
     "tighten": '--knot overhand --force "20 mN" --out overhand.zarr --picture overhand.png',
 }
 
@@ -101,7 +102,8 @@ def build(arguments: list[str]) -> App:
     app.command(_figure, name="figure", help_epilogue=FIGURE_EXAMPLES, version_flags=[])
     run = App(
         name="run",
-        help="Run an experiment: prison-escape (pull a bend) or tighten (pull a knot in one strand).",
+        help="Run an experiment: prison-escape (pull a bend), tighten (pull a knot in one strand) or "
+        "bend-twist (bend a twisted fiber).",
         help_epilogue="See the options with: torsade run prison-escape --help",
         version_flags=[],
     )

@@ -196,10 +196,14 @@ def _picture(result: Result, path: str) -> None:
 
 
 def _plot(result: Result, path: str) -> None:
-    from torsade.view.plots import plot_separation, plot_tightening
+    from torsade.view import plots
 
-    plot = plot_separation if result.protocol == "prison-escape" else plot_tightening
-    plot(result.dataset, path)
+    by_protocol = {
+        "prison-escape": plots.plot_separation,
+        "tighten": plots.plot_tightening,
+        "bend-twist": plots.plot_bent,
+    }
+    by_protocol[result.protocol](result.dataset, path)
 
 
 def _print(result: Result, out: str | None, json: bool) -> None:

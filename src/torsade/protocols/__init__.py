@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from torsade.protocols.base import Spec
+from torsade.protocols.bend_twist import BendTwist
 from torsade.protocols.files import PROTOCOLS, load_spec
 from torsade.protocols.prison_escape import PrisonEscape
 from torsade.protocols.tighten import Tighten
 
-__all__ = ["PROTOCOLS", "PrisonEscape", "Spec", "Tighten", "load_spec"]
+__all__ = ["PROTOCOLS", "BendTwist", "PrisonEscape", "Spec", "Tighten", "load_spec"]

@@ -15,13 +15,14 @@ from typing import Any
 
 from torsade.errors import TorsadeError, reason_of
 from torsade.protocols.base import Spec
+from torsade.protocols.bend_twist import BendTwist
 from torsade.protocols.prison_escape import PrisonEscape
 from torsade.protocols.tighten import Tighten
 
 __all__ = ["PROTOCOLS", "load_spec", "merged", "read_fields"]
 
 PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
-    {"prison-escape": PrisonEscape, "tighten": Tighten}
+    {"prison-escape": PrisonEscape, "tighten": Tighten, "bend-twist": BendTwist}
 )
 """The specification of every protocol, by name."""
 
