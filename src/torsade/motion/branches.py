@@ -20,12 +20,16 @@ from torsade.arrays import Floats
 from torsade.motion.bordered import Bordered
 from torsade.motion.chain import Chain, Controls, Shape, System
 from torsade.motion.spectrum import lowest, unstable_modes
-from torsade.motion.trust import TOLERANCE, imbalance, newton, step
+from torsade.motion.trust import imbalance, newton, settled, step
 
 __all__ = ["Path", "Point", "bifurcation", "carry", "fold", "follow", "switch"]
 
 SMALLEST_STEP = 1e-6
 MOST_CORRECTIONS = 8
+
+
+class _Lost(Exception):
+    """A branch could not be followed."""
 
 
 class Path(NamedTuple):
@@ -160,26 +164,28 @@ def bifurcation(chain: Chain, path: Path, before: Point, after: Point) -> tuple[
     """
     if before.unstable == after.unstable or before.tangent.p * after.tangent.p <= 0:
         return None
-    number = max(before.unstable, after.unstable)
-    shape = before.shape
+    first, number = sorted((before.unstable, after.unstable))
+    modes = lowest(chain, chain.system(before.shape, path.at(before.p)), number)[1][first:]
+
+    def at(p: float) -> tuple[Shape, System]:
+        share = (p - before.p) / (after.p - before.p)
+        near = before.shape if share < 0.5 else after.shape
+        found = newton(chain, near, path.at(p), still=modes)
+        if found is None:
+            raise _Lost
+        return found
 
     def critical(p: float) -> float:
-        nonlocal shape
-        found = newton(chain, shape, path.at(p))
-        if found is None:
-            return math.nan
-        shape = found[0]
-        return float(lowest(chain, found[1], number)[0][-1])
+        return float(lowest(chain, at(p)[1], number)[0][first])
 
     try:
-        p = float(brentq(critical, before.p, after.p, xtol=1e-12, rtol=1e-12))
-    except ValueError:
+        if critical(before.p) * critical(after.p) > 0.0:
+            return None
+        p = float(brentq(critical, before.p, after.p, xtol=1e-13, rtol=1e-12))
+        shape, system = at(p)
+    except _Lost:
         return None
-    found = newton(chain, shape, path.at(p))
-    if found is None:
-        return None
-    mode = lowest(chain, found[1], number)[1][-1]
-    return before._replace(p=p, shape=found[0]), mode
+    return before._replace(p=p, shape=shape), lowest(chain, system, number)[1][first]
 
 
 def switch(chain: Chain, path: Path, at: Point, mode: Floats, amplitude: float) -> Point | None:
@@ -240,6 +246,7 @@ def _correct(chain: Chain, path: Path, now: Point, along: Tangent, length: float
     torque = shape.torque + float(ds[k]) if chain.rotation_held else shape.torque
     shape = shape._replace(reaction=shape.reaction + ds[:k], torque=torque)
     p = now.p + length * along.p
+    before = math.inf
     for corrections in range(MOST_CORRECTIONS + 1):
         controls = path.at(p)
         if not chain.rotation_held:
@@ -247,13 +254,14 @@ def _correct(chain: Chain, path: Path, now: Point, along: Tangent, length: float
         system = chain.system(shape, controls)
         if not np.isfinite(system.residual).all():
             return None
-        if imbalance(chain, system) < TOLERANCE:
+        size = imbalance(chain, shape, controls, system)
+        if settled(size, before):
             return _point(chain, path, p, shape, system, along), corrections
         solver = _across(chain, path, shape, system, along)
         dq, more = solver.solve(-system.residual, np.concatenate([-system.gap, [0.0]]))
         if not np.isfinite(dq).all() or float(dq @ dq) > chain.twisted_length:
             return None
-        shape = step(chain, shape, system, dq, more)
+        shape, before = step(chain, shape, system, dq, more), size
         p += float(more[-1])
     return None
 
