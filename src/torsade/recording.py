@@ -38,6 +38,7 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "total_twist": (("time",), "rad", "twist of the fiber"),
     "max_log_strain": (("time",), "", "largest log(1 + sqrt(eps:eps))"),
     "twist": (("time", "fiber"), "rad", "twist of each fiber"),
+    "curvature": (("time", "node"), "1/m", "curvature of the centerline"),
     "displacement": (("time",), "m", "how far moved ends have gone"),
     "crossings": (("time",), "", "crossings seen along z"),
     "energy_stretch": (("time",), "J", "stretch energy"),
@@ -61,7 +62,6 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
         "",
         "first node of every piece; empty where pieces are not there",
     ),
-    "kappa": (("time", "node"), "1/m", "curvature, 0 at ends"),
     "twist_density": (("time", "node"), "rad/m", "twist density, 0 at ends"),
     "stress": (("time", "node"), "Pa", "stress by the criterion chosen, 0 at ends"),
     "angle": (("time",), "rad", "angle that the lower end has turned"),
@@ -70,7 +70,7 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
 """Dimensions, SI unit and meaning of every recorded variable."""
 
 STRAINED = ("position", "log_strain", "strain_stretch", "strain_bend", "strain_twist")
-SINGLE_PRECISION = (*STRAINED, "kappa", "twist_density", "stress")
+SINGLE_PRECISION = (*STRAINED, "curvature", "twist_density", "stress")
 
 BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in STRAINED)
 """What a frame takes for every node: the same, or nearly, in all protocols."""

@@ -35,6 +35,7 @@ OPTIONS: dict[str, tuple[type, str]] = {
 
 EXAMPLES = {
     "prison-escape": '--knot reef --force "15 N" --out reef.zarr --picture reef.png',
+    "bend-twist": '--length "24 cm" --end-distance "19 cm" --twist "270 deg" --plot bent.png',
     "pendulum": '--turn "45 deg" --mass "20 g" --out pendulum.zarr --plot pendulum.png',
     "snap-quench": '--speed "100 mm/s" --disorder 0.05 --seed 1 --out quench.zarr --plot quench.png',
     "snap-twist": '--twist "270 deg" --out snap.zarr --plot snap.png',
@@ -108,8 +109,8 @@ def build(arguments: list[str]) -> App:
     run = App(
         name="run",
         help="Run an experiment: prison-escape (pull a bend), tighten (pull a knot in one strand), reidemeister "
-        "(make a Reidemeister move), snap-twist (break a twisted rod), snap-quench (break a rod at speed) or "
-        "pendulum (a mass that turns on a rod).",
+        "(make a Reidemeister move), bend-twist (bend a twisted fiber), snap-twist (break a twisted rod), "
+        "snap-quench (break a rod at speed) or pendulum (a mass that turns on a rod).",
         help_epilogue="See the options with: torsade run prison-escape --help",
         version_flags=[],
     )

@@ -212,6 +212,7 @@ def _plot(result: Result, path: str) -> None:
         "prison-escape": plots.plot_separation,
         "tighten": plots.plot_tightening,
         "reidemeister": plots.plot_move,
+        "bend-twist": plots.plot_bent,
         "pendulum": plots.plot_swing,
         **dict.fromkeys(BREAKING, cascade.plot_cascade),
     }

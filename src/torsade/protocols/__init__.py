@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from torsade.protocols.base import Spec
+from torsade.protocols.bend_twist import BendTwist
 from torsade.protocols.files import PROTOCOLS, load_spec
 from torsade.protocols.pendulum import Pendulum
 from torsade.protocols.prison_escape import PrisonEscape
@@ -13,6 +14,7 @@ from torsade.protocols.tighten import Tighten
 
 __all__ = [
     "PROTOCOLS",
+    "BendTwist",
     "Pendulum",
     "PrisonEscape",
     "Reidemeister",

@@ -7,6 +7,7 @@ written into every result. Nothing heavy is imported until it runs, so that help
 from __future__ import annotations
 
 import dataclasses
+import json
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -106,6 +107,19 @@ class Spec(BaseModel, ABC):
     def stored(self) -> dict[str, Any]:
         """The fields as a result holds them: those that were given or have defaults."""
         return self.model_dump(mode="json", exclude_none=True)
+
+    @abstractmethod
+    def meaning(self) -> dict[str, Any]:
+        """The numbers behind names in the specification, which another version may understand otherwise."""
+
+    def attributes(self) -> dict[str, Any]:
+        """What every result of this specification says of itself."""
+        return {
+            "protocol": self.protocol,
+            "spec": json.dumps(self.stored()),
+            "radius": self.h,
+            "model": json.dumps(self.meaning()),
+        }
 
     @abstractmethod
     def run(
@@ -217,10 +231,6 @@ class Driven(Spec):
     @abstractmethod
     def lasting(self) -> float:
         """How long it goes on [s]."""
-
-    @abstractmethod
-    def meaning(self) -> dict[str, Any]:
-        """The numbers behind names in the specification, which another version may understand otherwise."""
 
     @abstractmethod
     def trial(self) -> Trial:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from contextlib import suppress
@@ -22,7 +21,7 @@ from torsade.results import Result
 if TYPE_CHECKING:
     from torsade.protocols.base import Driven, Progress, Trial
 
-__all__ = ["Interrupted", "drive"]
+__all__ = ["Interrupted", "drive", "preparation"]
 
 SAMPLE_EVERY = 0.01
 """Greatest time between samples [s]."""
@@ -42,7 +41,7 @@ def drive(
     try:
         if recording.complete:
             return recording.result()
-        tell(0.0, _preparation())
+        tell(0.0, preparation())
         motion.warm_up()
         if recording.saved is not None:
             motion.recover(recording.saved)
@@ -68,13 +67,7 @@ def drive(
 
 def _begin(spec: Driven, trial: Trial, out: str | Path | None, resume: bool, overwrite: bool) -> Recording:
     """A recording for all that this protocol measures."""
-    attrs = {
-        "protocol": spec.protocol,
-        "spec": json.dumps(spec.stored()),
-        "radius": spec.h,
-        "model": json.dumps(spec.meaning()),
-        "start": trial.start,
-    } | dict(trial.about)
+    attrs = spec.attributes() | {"start": trial.start} | dict(trial.about)
     samples = [SAMPLE + name for name in ("time", *trial.sampled)] if trial.sampled else []
     sizes = {"time": spec.frames + 1, "sample": len(_sample_times(spec, trial))} | dict(trial.sizes)
     return Recording.begin(
@@ -90,7 +83,7 @@ def _begin(spec: Driven, trial: Trial, out: str | Path | None, resume: bool, ove
     )
 
 
-def _preparation() -> str:
+def preparation() -> str:
     """What there is to do before the first step."""
     if _compile.CACHE is None:
         return (

@@ -15,6 +15,7 @@ from typing import Any
 
 from torsade.errors import TorsadeError, reason_of
 from torsade.protocols.base import Spec
+from torsade.protocols.bend_twist import BendTwist
 from torsade.protocols.pendulum import Pendulum
 from torsade.protocols.prison_escape import PrisonEscape
 from torsade.protocols.reidemeister import Reidemeister
@@ -29,6 +30,7 @@ PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
         "prison-escape": PrisonEscape,
         "tighten": Tighten,
         "reidemeister": Reidemeister,
+        "bend-twist": BendTwist,
         "snap-twist": SnapTwist,
         "snap-quench": SnapQuench,
         "pendulum": Pendulum,

@@ -25,7 +25,7 @@ NAMES = (
     "dissipation",
     "piece_start",
     "position",
-    "kappa",
+    "curvature",
     "twist_density",
     "stress",
 )
@@ -75,7 +75,7 @@ class PieceFrames:
             "dissipation": motion.dissipation,
             "piece_start": start,
             "position": self._padded(x),
-            "kappa": self._at_nodes(kappa),
+            "curvature": self._at_nodes(kappa),
             "twist_density": self._at_nodes(twist_density),
             "stress": self._at_nodes(stress),
         }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -61,7 +62,7 @@ def along_rod(dataset: xarray.Dataset, name: str) -> tuple[Floats, Floats]:
     values, starts = np.asarray(dataset[name], float), np.asarray(dataset["piece_start"], int)
     out = np.zeros((len(values), nodes))
     for frame, (row, start) in enumerate(zip(values, starts, strict=True)):
-        for piece, (first, last) in enumerate(zip(start[:-1], start[1:], strict=True)):
+        for piece, (first, last) in enumerate(pairwise(start)):
             place = slice(first - piece, last - piece)  # every break made one node two
             out[frame, place] = np.maximum(out[frame, place], row[first:last])
     return np.linspace(0.0, float(spec["length"]), nodes), out
