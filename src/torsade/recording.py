@@ -70,7 +70,7 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
 """Dimensions, SI unit and meaning of every recorded variable."""
 
 STRAINED = ("position", "log_strain", "strain_stretch", "strain_bend", "strain_twist")
-SINGLE_PRECISION = (*STRAINED, "curvature", "twist_density", "stress")
+SINGLE_PRECISION = (*STRAINED, "twist_density", "stress")
 
 BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in STRAINED)
 """What a frame takes for every node: the same, or nearly, in all protocols."""
