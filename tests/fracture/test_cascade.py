@@ -186,7 +186,7 @@ def test_twist_beyond_361_degrees_breaks_the_straight_rod() -> None:
 
 
 def test_a_rod_is_the_same_at_every_number_of_nodes() -> None:
-    """A hinge at a finer resolution is at least as strong as the coarser one that stands for its length too."""
+    """Finer hinges are at least as strong as the coarser one that stands for their lengths too."""
     coarse, fine = (strengths(np.full(n, 0.24 / n), 1.9e7, 0.1, seed=5) for n in (40, 80))
     assert coarse.shape == (39,)
     assert np.all(np.minimum(np.minimum(fine[:-2:2], fine[1:-1:2]), fine[2::2]) <= coarse + 1e-6)

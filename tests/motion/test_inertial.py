@@ -107,8 +107,8 @@ def test_what_damping_takes_is_dissipated() -> None:
 
 
 def test_a_rod_hangs_still_under_its_moments() -> None:
-    """A circular arc whose ends are clamped is in equilibrium: it stays where it is, to the third order of the
-    angles between its edges, in which the half hinges at grips differ from whole ones."""
+    """A circular arc whose ends are clamped is in equilibrium: it stays where it is, to the third order of
+    the angles between its edges, in which the half hinges at grips differ from whole ones."""
     n, radius = 40, 0.1
     angle = (np.arange(n) + 0.5) / n * 1.2
     t = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)
@@ -156,7 +156,7 @@ def test_runs_repeat_to_the_bit_from_what_was_saved() -> None:
 
 def test_unstable_steps_and_closed_fibers_are_refused() -> None:
     a, state = bent()
-    with pytest.raises(ts.TorsadeError, match=r"a step of 1e-05 s is not stable with edges of 8 mm; give one"):
+    with pytest.raises(ts.TorsadeError, match=r"a step of 1e-05 s is not stable with edges of 8 mm"):
         Inertial(a, SPAGHETTI, SECTION, ends.free(a), state, 1e-5)
     ring = np.stack([np.cos(np.arange(12) * np.pi / 6), np.sin(np.arange(12) * np.pi / 6), np.zeros(12)], 1)
     closed = assemble([ring], [True])

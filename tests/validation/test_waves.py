@@ -19,7 +19,8 @@ from torsade.motion.grips import gripped
 from torsade.motion.inertial import Inertial
 from torsade.rod.elasticity import hinge_curvature
 
-CURVES = Path(os.environ.get("TORSADE_SHARED", Path(__file__).resolve().parents[3] / "shared")) / "data/curves"
+SHARED = Path(os.environ.get("TORSADE_SHARED", Path(__file__).resolve().parents[3] / "shared"))
+CURVES = SHARED / "data" / "curves"
 SPAGHETTI = named_material("spaghetti")
 UNDAMPED = dataclasses.replace(SPAGHETTI, twist_damping=0.0)
 SECTION = Section(7e-4)
@@ -91,7 +92,7 @@ def test_twist_waves_travel_at_c_theta(mode: int) -> None:
 
 @pytest.mark.parametrize("column", ["undamped", "damped"])
 def test_a_twisted_rod_that_is_let_go_untwists_as_the_series_says(column: str) -> None:
-    """theta/Tw at all places and times of the table within 1 % of Tw; half a rod of length L, at 120 edges."""
+    """theta/Tw at all places and times of the table within 1 % of Tw, on half a rod of length L."""
     rows = table("wave_twist_damped.csv")
     dampings = np.unique(rows[:, 0])
     chosen = dampings[dampings == 0] if column == "undamped" else dampings[dampings > 0]
@@ -108,14 +109,14 @@ def test_a_twisted_rod_that_is_let_go_untwists_as_the_series_says(column: str) -
             at = of[of[:, 1] == time]
             inside = at[:, 2] <= 0.5
             got = np.interp(at[inside, 2] * length, a.edge_arclength, motion.state.theta)
-            np.testing.assert_allclose(got, at[inside, 3], atol=0.01, err_msg=f"b L/c = {beta}, ct/L = {time}")
+            np.testing.assert_allclose(got, at[inside, 3], atol=0.01, err_msg=f"b = {beta} c/L, {time} L/c")
 
 
 def released(n: int = 400, curvature: float = 0.2, length: float = 0.24):
     """A uniformly curved rod, clamped at one end, whose other end was let go just now.
 
-    The shortest waves that its edges l carry travel at c_s h/l at most, 1860 m/s at l = 0.6 mm: they come back
-    from the clamp after 0.26 ms.
+    The shortest waves that its edges l carry travel at c_s h/l at most, 1860 m/s at l = 0.6 mm: they come
+    back from the clamp after 0.26 ms.
     """
     angle = curvature * (np.arange(n) + 0.5) * length / n
     t = np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=1)

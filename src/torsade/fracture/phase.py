@@ -1,8 +1,9 @@
-"""How many pieces a rod breaks into, against its twist and the curvature at which it breaks (thesis Fig 3-4E).
+"""How many pieces a rod breaks into, against its twist and the curvature at which it breaks (thesis Fig
+3-4E).
 
 Every point is a rod as strong as breaks there: bent at a total twist until its largest curvature is the limit
-curvature, broken in the middle, its cascade followed. Rows of one twist are bent further from point to point, so
-that a shape takes some milliseconds; a cascade of 50 edges takes about fifteen.
+curvature, broken in the middle, its cascade followed. Rows of one twist are bent further from point to point,
+so that a shape takes some milliseconds; a cascade of 50 edges takes about fifteen.
 """
 
 from __future__ import annotations
