@@ -159,7 +159,7 @@ class Cascade:
         return self.motion.assembly.fiber_length.copy()
 
     def advance(self, until: float, max_steps: int = 2**62) -> Outcome:
-        """Advance to the first step at the time until [s] or after, at most max_steps of them; break on the way.
+        """Advance to the first step at or after the time until [s], in at most max_steps; break on the way.
 
         Raises
         ------
