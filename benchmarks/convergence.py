@@ -11,7 +11,7 @@ from typing import Any
 
 from benchmarks import common
 from torsade.motion.overdamped import Stepping
-from torsade.protocols.base import STANDARD_SPACING
+from torsade.protocols.pulled import STANDARD_SPACING
 from torsade.protocols.prison_escape import PrisonEscape
 
 PAGE = Path(__file__).parents[1] / "docs" / "convergence.md"

@@ -34,6 +34,8 @@ KERNEL_SOURCES = (
     "topology",
     "rod",
     "motion",
+    "fracture/criteria.py",
+    "fracture/stress_kernels.py",
     "knots/band.py",
     "knots/spread.py",
     "knots/tight_kernels.py",
@@ -151,15 +153,23 @@ def compile_kernels(
     for name, function in list(vars(module).items()):
         own = inspect.isfunction(function) and function.__module__ == module_name
         if own and name not in plain:
-            options = {
-                "cache": CACHE is not None,
-                "error_model": "numpy",
-                "nogil": True,
-                "no_cfunc_wrapper": True,
-                "fastmath": {"contract"},
-            }
+            options: dict[str, Any] = {}
             if name in inline:
                 options["forceinline"] = True
             if name in splice:
                 options["inline"] = "always"
-            setattr(module, name, Kernel(function, name in owning, **options))
+            setattr(module, name, compiled(function, name in owning, **options))
+
+
+def compiled(function: Callable[..., Any], counting: bool = False, **options: Any) -> Callable[..., Any]:
+    """The compiled form of one function, which stays as it is; as `compile_kernels`, with more options."""
+    if config.DISABLE_JIT:
+        return function
+    common = {
+        "cache": CACHE is not None,
+        "error_model": "numpy",
+        "nogil": True,
+        "no_cfunc_wrapper": True,
+        "fastmath": {"contract"},
+    }
+    return Kernel(function, counting, **common | options)

@@ -120,6 +120,51 @@ def assemble(
     )
 
 
+def split(a: Assembly, hinge: int) -> Assembly:
+    """The assembly after its fiber is cut at a hinge: one hinge less, one node and one fiber more.
+
+    The node of the hinge becomes two neighbours in the order of nodes, the end of one fiber and the beginning
+    of the next; the order of edges stays. `np.insert(values, node, values[node], axis=0)` makes arrays of
+    nodes fit.
+    """
+    before, after, node = (int(i) for i in a.hinges[hinge])
+    fiber = int(a.edge_fiber[before])
+    if a.closed[fiber]:
+        raise TorsadeError(f"fiber {fiber} is closed, and only open fibers are split; cut it open")
+    edges = a.edges + (a.edges > node)
+    edges[after, 0] = node + 1
+    hinges = np.delete(a.hinges, hinge, axis=0)
+    hinges[:, 2] += hinges[:, 2] > node
+    beside = a.beside.copy()
+    beside[before, 1] = beside[after, 0] = -1
+    node_length = np.insert(a.node_length, node, 0.5 * a.rest_length[before])
+    node_length[node + 1] = 0.5 * a.rest_length[after]
+    start, end = int(a.edge_start[fiber]), int(a.edge_start[fiber + 1])
+    first = float(a.rest_length[start:after].sum())
+    edge_arclength = a.edge_arclength.copy()
+    edge_arclength[after:end] -= first
+    edge_fiber = a.edge_fiber.copy()
+    edge_fiber[after:] += 1
+    fiber_length = np.insert(a.fiber_length, fiber, first)
+    fiber_length[fiber + 1] -= first
+    shift = np.arange(len(a.node_start)) > fiber
+    return Assembly(
+        edges=edges,
+        hinges=hinges,
+        beside=beside,
+        rest_length=a.rest_length,
+        hinge_length=np.delete(a.hinge_length, hinge),
+        node_length=node_length,
+        edge_arclength=edge_arclength,
+        edge_fiber=edge_fiber,
+        fiber_length=fiber_length,
+        node_start=np.insert(a.node_start + shift, fiber + 1, node + 1),
+        edge_start=np.insert(a.edge_start, fiber + 1, after),
+        hinge_start=np.insert(a.hinge_start - shift, fiber + 1, hinge),
+        closed=np.insert(a.closed, fiber, False),
+    )
+
+
 def _fiber(x: Floats, closed: bool, fiber: int) -> tuple[Ints, Ints, Floats]:
     """Edges, hinges (both counted from zero) and present edge lengths of one polyline."""
     n = len(x)

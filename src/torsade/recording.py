@@ -17,9 +17,7 @@ from numpy.typing import NDArray
 
 from torsade import __version__, places, store
 from torsade.arrays import Floats
-from torsade.assembly import Assembly, State
 from torsade.errors import TorsadeError, counted, quoted
-from torsade.motion.overdamped import Checkpoint
 from torsade.results import Result
 
 __all__ = ["BYTES_PER_NODE", "SAMPLE", "VARIABLES", "Recording"]
@@ -40,6 +38,7 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "total_twist": (("time",), "rad", "twist of the fiber"),
     "max_log_strain": (("time",), "", "largest log(1 + sqrt(eps:eps))"),
     "twist": (("time", "fiber"), "rad", "twist of each fiber"),
+    "curvature": (("time", "node"), "1/m", "curvature of the centerline"),
     "displacement": (("time",), "m", "how far moved ends have gone"),
     "crossings": (("time",), "", "crossings seen along z"),
     "energy_stretch": (("time",), "J", "stretch energy"),
@@ -57,10 +56,24 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "strain_stretch": (("time", "node"), "", "stretch |x'| - 1"),
     "strain_bend": (("time", "node"), "", "strain of bending on the surface, h kappa"),
     "strain_twist": (("time", "node"), "", "strain of twist on the surface, h |theta'|/sqrt(2)"),
+    "end_distance": (("time",), "m", "distance of the two ends of the rod"),
+    "kappa_max": (("time",), "1/m", "largest curvature"),
+    "energy_kinetic": (("time",), "J", "kinetic energy of the centerline"),
+    "energy_spin": (("time",), "J", "kinetic energy of spin"),
+    "energy_released": (("time",), "J", "energy lost in breaks since the start"),
+    "piece_start": (
+        ("time", "piece_bound"),
+        "",
+        "first node of every piece; empty where pieces are not there",
+    ),
+    "twist_density": (("time", "node"), "rad/m", "twist density, 0 at ends"),
+    "stress": (("time", "node"), "Pa", "stress by the criterion chosen, 0 at ends"),
+    "angle": (("time",), "rad", "angle that the lower end has turned"),
+    "sample_angle": (("sample",), "rad", "angle at the times of samples"),
 }
 """Dimensions, SI unit and meaning of every recorded variable."""
 
-SINGLE_PRECISION = (
+FRAMES = (
     "position",
     "log_strain",
     "strain_stretch",
@@ -69,15 +82,16 @@ SINGLE_PRECISION = (
     "velocity",
     "self_torque",
 )
+SINGLE_PRECISION = (*FRAMES, "twist_density", "stress")
 
-BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in SINGLE_PRECISION)
-"""What a frame takes for every node, and the edge that comes with it."""
+BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in FRAMES)
+"""What a frame takes at most for every node, and the edge that comes with it."""
 
 SAMPLE = "sample_"
 """Beginning of the names of samples."""
 
-CLOCK = ("clock_time", "clock_counts", "done", "sampled", "wall")
-"""What the restart file holds besides the state."""
+PROGRESS = ("done", "sampled", "wall", "steps")
+"""What the restart file holds besides what the motion saves."""
 
 Frame = Mapping[str, "float | Floats"]
 
@@ -88,23 +102,20 @@ class Recording:
     Attributes
     ----------
     done, sampled : frames and samples recorded
-    checkpoint : state and clock at the last of them, None before the first
+    saved : all that decides how the motion goes on after the last of them, None before the first
     wall : computing time so far [s]
     complete : whether there is nothing left to do
     part : the growing folder on disk, under a name of its own until it holds a frame, or None
     """
 
     def __init__(
-        self, assembly: Assembly, frames: int, samples: int, names: tuple[str, ...], attrs: dict[str, Any]
+        self,
+        sizes: Mapping[str, int],
+        fixed: Mapping[str, tuple[str, NDArray[Any]]],
+        names: tuple[str, ...],
+        attrs: dict[str, Any],
     ) -> None:
-        sizes = {
-            "time": frames,
-            "sample": samples,
-            "fiber": len(assembly.closed),
-            "node": len(assembly.node_length),
-            "edge": len(assembly.edges),
-            "space": 3,
-        }
+        sizes = {"space": 3, **sizes}
         self._arrays: dict[str, NDArray[Any]] = {
             name: np.full(
                 [sizes[d] for d in VARIABLES[name][0]],
@@ -113,13 +124,11 @@ class Recording:
             )
             for name in names
         }
-        self._fixed = {
-            "node_start": ("fiber_bound", assembly.node_start.copy()),
-            "closed": ("fiber", assembly.closed.copy()),
-        }
+        self._fixed = dict(fixed)
         self.attrs = attrs | {"created": _now(), "versions": _versions(), "status": "running"}
         self.done = self.sampled = 0
-        self.checkpoint: Checkpoint | None = None
+        self.saved: dict[str, NDArray[Any]] | None = None
+        self._restart: tuple[str, ...] = ()
         self.complete = False
         self.wall = 0.0
         self._steps = 0
@@ -133,12 +142,12 @@ class Recording:
     @classmethod
     def begin(
         cls,
-        assembly: Assembly,
-        frames: int,
-        samples: int,
+        sizes: Mapping[str, int],
+        fixed: Mapping[str, tuple[str, NDArray[Any]]],
         names: tuple[str, ...],
         attrs: dict[str, Any],
         derive: Callable[[dict[str, Floats]], dict[str, Floats]],
+        restart: tuple[str, ...],
         out: str | Path | None,
         *,
         resume: bool,
@@ -147,10 +156,11 @@ class Recording:
         """A new recording, or with resume the one that an interrupted run of the same left at `out`.
 
         Close it when the run ends, however it does. attrs must hold all that tells one run from another;
-        derive gives the histories that follow from those recorded.
+        sizes are those of the dimensions, frames (time) and samples (sample) among them; derive gives the
+        histories that follow from those recorded; restart names the arrays that the motion saves.
         """
-        recording = cls(assembly, frames, samples, names, attrs)
-        recording._derive = derive
+        recording = cls(sizes, fixed, names, attrs)
+        recording._derive, recording._restart = derive, restart
         if out is None:
             if resume:
                 raise TorsadeError(
@@ -205,12 +215,11 @@ class Recording:
             store.complete(part, self._out, {}, {})
             self.complete = True
         elif store.has_restart(part):
-            saved = store.read_restart(part, (*State._fields, *CLOCK))
+            saved = store.read_restart(part, (*self._restart, *PROGRESS))
             self.done, self.sampled = self._written = int(saved["done"]), int(saved["sampled"])
             self.wall = float(saved["wall"])
-            state = State(*(saved[name] for name in State._fields))
-            self.checkpoint = Checkpoint(state, saved["clock_time"], saved["clock_counts"])
-            self._steps = int(self.checkpoint.counts[0])
+            self._steps = int(saved["steps"])
+            self.saved = {name: saved[name] for name in self._restart}
             store.set_attributes(part, self._progress())
             self._read(part)
         elif int(found["done"]) == len(self._arrays["time"]):  # only the end is missing
@@ -240,10 +249,9 @@ class Recording:
             self._arrays[SAMPLE + name][self.sampled] = value
         self.sampled += 1
 
-    def keep(self, checkpoint: Checkpoint, wall: float) -> None:
-        """Hold the state behind what was recorded last, and the computing time so far [s]."""
-        self.checkpoint, self.wall = checkpoint, wall
-        self._steps = int(checkpoint.counts[0])
+    def keep(self, saved: dict[str, NDArray[Any]], steps: int, wall: float) -> None:
+        """Hold what the motion saved behind what was recorded last, its steps and the computing time [s]."""
+        self.saved, self._steps, self.wall = saved, steps, wall
         if time.monotonic() - self._flushed > FLUSH_EVERY:
             self.flush()
 
@@ -276,15 +284,14 @@ class Recording:
         if self.done:
             for name, values in self._derive(self.histories()).items():
                 self._arrays[name][: self.done] = values
-        if self.part is None or self.checkpoint is None:
+        if self.part is None or self.saved is None:
             return
         frames = {name: a for name, a in self._arrays.items() if not name.startswith(SAMPLE)}
         store.append(self.part, frames, self._written[0], self.done)
         samples = {name: a for name, a in self._arrays.items() if name.startswith(SAMPLE)}
         store.append(self.part, samples, self._written[1], self.sampled)
-        clock = {"clock_time": self.checkpoint.time, "clock_counts": self.checkpoint.counts}
-        progress = {name: np.array(getattr(self, name)) for name in ("done", "sampled", "wall")}
-        store.write_restart(self.part, self.checkpoint.state._asdict() | clock | progress)
+        progress = {name: np.array(value) for name, value in self._progress().items() if name in PROGRESS}
+        store.write_restart(self.part, self.saved | progress | {"wall": np.array(self.wall)})
         store.set_attributes(self.part, self._progress())
         self._settle()
         self._written = self.done, self.sampled
@@ -307,8 +314,8 @@ class Recording:
         finally:
             self._discard()
 
-    def finish(self, numbers: Mapping[str, float]) -> Result:
-        """The result of a run that came to its end, with the numbers that belong to it as a whole."""
+    def finish(self, numbers: Mapping[str, Any]) -> Result:
+        """The result of a run that came to its end, with what belongs to it as a whole."""
         self.flush()
         self.attrs.update({"status": "complete"} | dict(numbers))
         self.attrs.update(self._progress())

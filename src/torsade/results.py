@@ -8,8 +8,8 @@ all fibers, stored in single precision. Samples, `sample_time (sample)` [s] and 
 (fiber_bound)` says where each fiber begins, `closed (fiber)` which are closed.
 
 The attributes hold `protocol`, `spec` and `model` (JSON: what was asked, and the numbers that it meant),
-`knot`, `radius` [m], `versions`, `created`, `status`, `done` (frames), `sampled`, `steps`, `wall_s`, and
-what the protocol concludes, such as `c_f`.
+`knot` where there is one, `radius` [m], `versions`, `created`, `status`, `done` (frames), `sampled`, `steps`,
+`wall_s`, and what the protocol concludes, such as `c_f`.
 """
 
 from __future__ import annotations
@@ -154,7 +154,8 @@ class Result:
     def __repr__(self) -> str:
         attrs = self._dataset.attrs
         last = float(self._dataset["time"][-1]) if self.frames else 0.0
-        return f"<Result of {attrs['protocol']} on {attrs['knot']}: {self.frames} frames to t = {last:.4g} s>"
+        what = f" on {attrs['knot']}" if "knot" in attrs else ""
+        return f"<Result of {attrs['protocol']}{what}: {self.frames} frames to t = {last:.4g} s>"
 
 
 def open_result(path: str | Path) -> Result:

@@ -244,10 +244,10 @@ def test_the_first_ctrl_c_waits_and_the_second_does_not() -> None:
 
 
 def test_long_stretches_without_frames_look_at_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
-    from torsade.protocols import driving
+    from torsade.motion import overdamped
 
     seen = []
-    monkeypatch.setattr(driving, "NODE_STEPS_AT_ONCE", 314 * 2)
+    monkeypatch.setattr(overdamped, "NODE_STEPS_AT_ONCE", 314 * 2)
     spec = PrisonEscape(knot="reef", duration="2 ms", frames=1, fixed_step="2 us")
     spec.run(lambda share, note: seen.append(share))
     assert len(seen) > 400  # ten steps between samples, in calls of two

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, Group, Parameter
 
 from torsade import __version__
+from torsade.cli.fracture_app import add_commands
 from torsade.cli.knots_app import knots_app
 from torsade.errors import TorsadeError
 
@@ -34,6 +35,10 @@ OPTIONS: dict[str, tuple[type, str]] = {
 
 EXAMPLES = {
     "prison-escape": '--knot reef --force "15 N" --out reef.zarr --picture reef.png',
+    "bend-twist": '--length "24 cm" --end-distance "19 cm" --twist "270 deg" --plot bent.png',
+    "pendulum": '--turn "45 deg" --mass "20 g" --out pendulum.zarr --plot pendulum.png',
+    "snap-quench": '--speed "100 mm/s" --disorder 0.05 --seed 1 --out quench.zarr --plot quench.png',
+    "snap-twist": '--twist "270 deg" --out snap.zarr --plot snap.png',
     "tighten": '--knot overhand --duration "10 s" --until-still "1 um/s" --out overhand.zarr',
     "reidemeister": "--move R1 --out loop.zarr --plot loop.png",
 }
@@ -99,11 +104,13 @@ def build(arguments: list[str]) -> App:
     app.command(_convert, name="convert", help_epilogue=CONVERT_EXAMPLES, version_flags=[])
     app.command(knots_app())
     app.command(_tight, name="tight", help_epilogue=TIGHT_EXAMPLES, version_flags=[])
+    add_commands(app)
     app.command(_figure, name="figure", help_epilogue=FIGURE_EXAMPLES, version_flags=[])
     run = App(
         name="run",
-        help="Run an experiment: prison-escape (pull a bend), tighten (pull a knot in one strand) or "
-        "reidemeister (make a Reidemeister move).",
+        help="Run an experiment: prison-escape (pull a bend), tighten (pull a knot in one strand), "
+        "reidemeister (make a Reidemeister move), bend-twist (bend a twisted fiber), snap-twist (break a "
+        "twisted rod), snap-quench (break a rod at speed) or pendulum (a mass that turns on a rod).",
         help_epilogue="See the options with: torsade run prison-escape --help",
         version_flags=[],
     )

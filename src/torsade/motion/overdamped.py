@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import Enum
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from torsade.arrays import Floats, Ints
 from torsade.assembly import Assembly, State
@@ -15,6 +16,7 @@ from torsade.errors import TorsadeError
 from torsade.material import Material, Section
 from torsade.motion import scheme, stepping
 from torsade.motion.ends import Boundary
+from torsade.motion.moving import Outcome
 from torsade.motion.near import measure
 from torsade.rod.contact import Model
 from torsade.rod.factor import no_factor
@@ -113,12 +115,12 @@ class Stepping:
     move: float = 0.2
 
 
-class Outcome(Enum):
-    """Why a run paused: it reached the time asked for, took the steps asked for, or slipped apart."""
+NODE_STEPS_AT_ONCE = 60_000
+"""Steps times nodes between looks at the screen and at Ctrl-C: about 0.2 s.
 
-    REACHED = stepping.REACHED
-    PAUSED = stepping.PAUSED
-    SLIPPED = stepping.SLIPPED
+A number and not a time, since the stepper makes a new neighbour list whenever it is called, and runs must
+repeat to the bit.
+"""
 
 
 class Energies(NamedTuple):
@@ -212,6 +214,11 @@ class Motion:
         return int(self._clock.count[0])
 
     @property
+    def at_once(self) -> int:
+        """Steps between looks at the screen and at Ctrl-C, about 0.2 s."""
+        return max(1, NODE_STEPS_AT_ONCE // len(self.state.x))
+
+    @property
     def counts(self) -> dict[str, int]:
         """Steps, refused steps, evaluations of the rates and neighbour lists made so far."""
         names = ("steps", "refused", "evaluations", "neighbour_lists")
@@ -278,3 +285,20 @@ class Motion:
         self.state = checkpoint.state.copy()
         self._clock.time[:] = checkpoint.time
         self._clock.count[:] = checkpoint.counts
+
+    def warm_up(self) -> None:
+        """Compile or load every kernel, and leave no trace."""
+        start = self.checkpoint()
+        self.advance(0.0)
+        self.measure()
+        self.restore(start)
+
+    def saved(self) -> dict[str, NDArray[Any]]:
+        """Copies of the arrays that decide how the motion goes on, by name: a checkpoint."""
+        state, time, counts = self.checkpoint()
+        return state._asdict() | {"clock_time": time, "clock_counts": counts}
+
+    def recover(self, saved: Mapping[str, NDArray[Any]]) -> None:
+        """Go on from the arrays that `saved` gave."""
+        state = State(*(saved[name] for name in State._fields))
+        self.restore(Checkpoint(state, saved["clock_time"], saved["clock_counts"]))

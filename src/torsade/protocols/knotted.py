@@ -8,13 +8,13 @@ from typing import Annotated
 from pydantic import Field, field_validator
 
 from torsade.errors import QuantityError, TorsadeError, quoted
-from torsade.protocols.base import Spec
+from torsade.protocols.pulled import Pulled
 from torsade.units import Length, quantity
 
 __all__ = ["Knotted"]
 
 
-class Knotted(Spec):
+class Knotted(Pulled):
     """A specification whose fibers are a built-in knot or a file of strands."""
 
     knot: str | None

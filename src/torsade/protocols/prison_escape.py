@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, field_validator, model_validator
 
 from torsade.errors import TorsadeError
-from torsade.protocols.base import Experiment, Positive
+from torsade.protocols.base import Positive
 from torsade.protocols.knotted import Knotted
+from torsade.protocols.pulled import Experiment
 from torsade.units import Force, Length
 
 if TYPE_CHECKING:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from torsade.errors import TorsadeError
-from torsade.protocols.base import Experiment, Positive, Spec
+from torsade.protocols.base import Positive
+from torsade.protocols.pulled import Experiment, Pulled
 from torsade.units import Length, Time
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ VIEWS = ((0.0131, 0.0073, 1.0), (-0.0117, 0.0087, 1.0), (0.0091, -0.0139, 1.0))
 _OWN = "reidemeister makes the strands that it moves, so there is no field {!r}; leave it out"
 
 
-class Reidemeister(Spec):
+class Reidemeister(Pulled):
     """Make a Reidemeister move on fibers by moving their ends, and record what it costs.
 
     R1: a fiber with one loop lies at rest; its ends are drawn apart until the loop is gone. R2: an arc is
@@ -41,7 +42,7 @@ class Reidemeister(Spec):
     """
 
     hints: ClassVar[Mapping[str, str]] = {
-        **Spec.hints,
+        **Pulled.hints,
         **{name: _OWN.format(name) for name in ("knot", "centerline", "bend", "lead")},
         "force": "reidemeister moves ends at a given speed, so there is no field 'force'; leave it out",
         "speed": "there is no field 'speed'; give 'duration', the time that the move takes",

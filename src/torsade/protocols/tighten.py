@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from torsade.protocols.base import Experiment, Positive
+from torsade.protocols.base import Positive
 from torsade.protocols.knotted import Knotted
+from torsade.protocols.pulled import Experiment
 from torsade.units import Force, Velocity
 
 if TYPE_CHECKING:

@@ -35,7 +35,7 @@ def stretch_energy(a: Assembly, EA: float, length: Floats) -> float:
     return total
 
 
-def _bend_length(rest: float, present: bool, before: float, after: float) -> float:
+def bend_length(rest: float, present: bool, before: float, after: float) -> float:
     """The length [m] over which a hinge bends: at rest, or the mean of its edges as long as they are."""
     return 0.5 * (before + after) if present else rest
 
@@ -51,7 +51,7 @@ def bend_energy(a: Assembly, B: float, present: bool, length: Floats, tangent: F
         dy = tangent[q, 1] - tangent[p, 1]
         dz = tangent[q, 2] - tangent[p, 2]
         half = 0.5 * (dx * dx + dy * dy + dz * dz)
-        lbar = _bend_length(hinge_length[k], present, length[p], length[q])
+        lbar = bend_length(hinge_length[k], present, length[p], length[q])
         total += 0.5 * B * 4.0 * half / (2.0 - half) / lbar
     return total
 
@@ -99,7 +99,7 @@ def add_elastic_forces(
         moment = C * m[k] / hinge_length[k]
         torque[p] += moment
         torque[q] -= moment
-        lbar = _bend_length(hinge_length[k], present, length[p], length[q])
+        lbar = bend_length(hinge_length[k], present, length[p], length[q])
         bend = -4.0 * B * s * s / lbar
         ease = B * (1.0 - cosine) * s / (lbar * lbar) if present else 0.0
         turn = s * moment
@@ -140,4 +140,4 @@ def hinge_curvature(a: Assembly, tangent: Floats, kappa: Floats) -> None:
         kappa[k] = 2.0 * math.sqrt(half / (2.0 - half)) / a.hinge_length[k]
 
 
-compile_kernels(__name__, inline=("_bend_length",))
+compile_kernels(__name__, inline=("bend_length",))

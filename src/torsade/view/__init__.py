@@ -11,14 +11,31 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from torsade.view.plots import plot_move, plot_separation, plot_tightening
+    from torsade.view.cascade import along_rod, draw_pieces, pieces_at, plot_cascade
+    from torsade.view.plots import plot_move, plot_separation, plot_swing, plot_tightening
     from torsade.view.scene import render, render_result
 
-__all__ = ["plot_move", "plot_separation", "plot_tightening", "render", "render_result"]
+__all__ = [
+    "along_rod",
+    "draw_pieces",
+    "pieces_at",
+    "plot_cascade",
+    "plot_move",
+    "plot_separation",
+    "plot_swing",
+    "plot_tightening",
+    "render",
+    "render_result",
+]
 
 _HOMES = {
+    "along_rod": "torsade.view.cascade",
+    "pieces_at": "torsade.view.cascade",
+    "draw_pieces": "torsade.view.cascade",
+    "plot_cascade": "torsade.view.cascade",
     "plot_move": "torsade.view.plots",
     "plot_separation": "torsade.view.plots",
+    "plot_swing": "torsade.view.plots",
     "plot_tightening": "torsade.view.plots",
     "render": "torsade.view.scene",
     "render_result": "torsade.view.scene",

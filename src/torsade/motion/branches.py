@@ -1,0 +1,273 @@
+"""Continuation: families of equilibria as what is given changes, through folds and onto other branches.
+
+A path runs through controls from `start` (p = 0) to `stop` (p = 1). Points on it are found by
+pseudo-arclength continuation (Keller 1977): a step along the tangent, then Newton's method in the plane
+across it, in which the share p is unknown too, so that folds, where a load is largest, are passed like
+any other point. The metric of a step is the mean square of the angle that edges turn by, plus the square
+of the change of the controls in their natural units.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+
+from torsade.arrays import Floats
+from torsade.motion.bordered import Bordered
+from torsade.motion.chain import Chain, Controls, Shape, System
+from torsade.motion.spectrum import lowest, unstable_modes
+from torsade.motion.trust import imbalance, newton, settled, step
+
+__all__ = ["Path", "Point", "bifurcation", "carry", "fold", "follow", "switch"]
+
+SMALLEST_STEP = 1e-6
+MOST_CORRECTIONS = 8
+
+
+class _Lost(Exception):
+    """A branch could not be followed."""
+
+
+class Path(NamedTuple):
+    """Controls from one end, p = 0, to the other, p = 1, and beyond."""
+
+    start: Controls
+    stop: Controls
+
+    def at(self, p: float) -> Controls:
+        """The controls at the share p of the path."""
+        return self.start.towards(self.stop, p)
+
+    @property
+    def rate(self) -> Controls:
+        """How the controls change with p."""
+        return self.start.to(self.stop)
+
+    def size(self, chain: Chain) -> float:
+        """How far controls change from end to end, in units of B and L and in radians; never nothing."""
+        L, rate = chain.twisted_length, self.rate
+        force = float(np.abs(rate.load).max()) * L**2 / chain.B
+        place = float(np.linalg.norm(rate.value)) / L
+        return math.hypot(force, place, rate.torque * L / chain.B, rate.rotation, 1e-6)
+
+
+class Tangent(NamedTuple):
+    """Direction of a branch: change of edges and angles (n_edges, 4), of multipliers (k,) and of p."""
+
+    change: Floats
+    multipliers: Floats
+    p: float
+
+
+class Point(NamedTuple):
+    """An equilibrium on a branch.
+
+    Attributes
+    ----------
+    p : share of the path
+    shape : the equilibrium
+    unstable : number of motions that would lower its energy
+    tangent : direction of the branch; p changes sign at folds
+    """
+
+    p: float
+    shape: Shape
+    unstable: int
+    tangent: Tangent
+
+
+def follow(
+    chain: Chain,
+    shape: Shape,
+    path: Path,
+    *,
+    first: float = 0.2,
+    largest: float = 0.5,
+    most: int = 500,
+    tangent: Tangent | None = None,
+    p: float = 0.0,
+) -> Iterator[Point]:
+    """Points of the branch through an equilibrium at share p, until p = 1 is reached or p = 0 again.
+
+    The last point has p = 1 exactly if the path's end was reached. `first` and `largest` are steps, `tangent`
+    the direction to set out in, towards greater p unless given.
+    """
+    begun = _at(chain, shape, path, p, tangent)
+    if begun is None:
+        return
+    now, length = begun, first
+    yield now
+    for _ in range(most):
+        found = _correct(chain, path, now, now.tangent, length)
+        if found is None:
+            length *= 0.5
+            if length < SMALLEST_STEP:
+                return
+            continue
+        point, corrections = found
+        if point.p >= 1.0 > now.p:
+            last = _land(chain, path, now, point)
+            if last is not None:
+                yield last
+                return
+        now = point
+        yield now
+        if now.p < 0.0:
+            return
+        length = min(largest, length * (1.5 if corrections <= 3 else 1.0 if corrections <= 5 else 0.7))
+
+
+def fold(chain: Chain, path: Path, before: Point, after: Point) -> Point:
+    """The last point before the branch turns back between two points, in controls to a millionth."""
+    now, length = before, 0.5 * _distance(chain, path, before, after)
+    while length > 1e-3:
+        found = _correct(chain, path, now, now.tangent, length)
+        if found is None or found[0].tangent.p <= 0.0:
+            length *= 0.5
+        else:
+            now = found[0]
+    return now
+
+
+LONGEST_AT_ONCE = 0.15, 0.7
+"""Up to which a path is taken in one step: the angle that edges turn by [rad], and the change of controls in
+units of B and L."""
+
+
+def carry(chain: Chain, shape: Shape, path: Path) -> Shape | None:
+    """The equilibrium at the end of a short path, in one predicted step; None when it is not short."""
+    turn, change = LONGEST_AT_ONCE
+    if path.size(chain) > change:
+        return None
+    begun = _at(chain, shape, path, 0.0, None)
+    if begun is None or begun.tangent.p <= 0.0:
+        return None
+    whole = 1.0 / begun.tangent.p
+    k, tangent = len(chain.weight), begun.tangent
+    angle = whole * float(np.linalg.norm(tangent.change[:, :3])) / math.sqrt(len(shape.edge))
+    if angle > turn * float(np.linalg.norm(shape.edge, axis=1).max()):
+        return None
+    moved = chain.moved(begun.shape, whole * tangent.change)
+    reaction = moved.reaction + whole * tangent.multipliers[:k]
+    found = newton(chain, moved._replace(reaction=reaction), path.at(1.0))
+    return None if found is None else found[0]
+
+
+def bifurcation(chain: Chain, path: Path, before: Point, after: Point) -> tuple[Point, Floats] | None:
+    """Where another branch leaves between two points, and the mode (n_edges, 4) along which it does.
+
+    None when as many modes are unstable on both sides, or when a fold lies between them.
+    """
+    if before.unstable == after.unstable or before.tangent.p * after.tangent.p <= 0:
+        return None
+    first, number = sorted((before.unstable, after.unstable))
+    modes = lowest(chain, chain.system(before.shape, path.at(before.p)), number)[1][first:]
+
+    def at(p: float) -> tuple[Shape, System]:
+        share = (p - before.p) / (after.p - before.p)
+        near = before.shape if share < 0.5 else after.shape
+        found = newton(chain, near, path.at(p), still=modes)
+        if found is None:
+            raise _Lost
+        return found
+
+    def critical(p: float) -> float:
+        return float(lowest(chain, at(p)[1], number)[0][first])
+
+    try:
+        if critical(before.p) * critical(after.p) > 0.0:
+            return None
+        p = float(brentq(critical, before.p, after.p, xtol=1e-13, rtol=1e-12))
+        shape, system = at(p)
+    except _Lost:
+        return None
+    return before._replace(p=p, shape=shape), lowest(chain, system, number)[1][first]
+
+
+def switch(chain: Chain, path: Path, at: Point, mode: Floats, amplitude: float) -> Point | None:
+    """A point on the branch that leaves along a mode, this far from where it does; None if there is none.
+
+    amplitude is the root mean square of the angle that edges turn by [rad]; its sign chooses the side.
+    """
+    unit = Tangent(mode * math.sqrt(chain.twisted_length), np.zeros(chain.held), 0.0)
+    found = _correct(chain, path, at, unit, amplitude)
+    return None if found is None else found[0]
+
+
+def _distance(chain: Chain, path: Path, before: Point, after: Point) -> float:
+    """Length of the step between two points."""
+    turned = float(np.linalg.norm(after.shape.edge - before.shape.edge))
+    turned /= float(np.linalg.norm(after.shape.edge, axis=1).max()) * math.sqrt(len(after.shape.edge))
+    return math.hypot(turned, path.size(chain) * (after.p - before.p))
+
+
+def _at(chain: Chain, shape: Shape, path: Path, p: float, tangent: Tangent | None) -> Point | None:
+    """The point of a branch at which a path is begun."""
+    found = newton(chain, shape, path.at(p))
+    if found is None:
+        return None
+    upwards = tangent or Tangent(np.zeros((len(shape.edge), 4)), np.zeros(chain.held), 1.0)
+    return _point(chain, path, p, *found, upwards)
+
+
+def _point(chain: Chain, path: Path, p: float, shape: Shape, system: System, along: Tangent) -> Point:
+    """An equilibrium with its stability and the branch's direction, which goes on along the one before."""
+    solver = _across(chain, path, shape, system, along)
+    k = chain.held
+    dq, ds = solver.solve(np.zeros(len(system.residual)), np.concatenate([np.zeros(k), [1.0]]))
+    norm = math.hypot(np.linalg.norm(dq) / math.sqrt(chain.twisted_length), path.size(chain) * float(ds[k]))
+    tangent = Tangent(system.lift(dq) / norm, ds[:k] / norm, float(ds[k]) / norm)
+    return Point(p, shape, unstable_modes(chain, system), tangent)
+
+
+def _across(chain: Chain, path: Path, shape: Shape, system: System, along: Tangent) -> Bordered:
+    """The Newton system with p unknown, in the plane across a direction."""
+    by_p, gap_by_p = chain.by_path(shape, system, path.rate)
+    k = chain.held
+    corner = np.zeros((k + 1, k + 1))
+    corner[:k, :k] = system.corner
+    corner[:k, k] = gap_by_p
+    corner[k, k] = along.p * path.size(chain) ** 2
+    row = system.lower(along.change) / chain.twisted_length
+    right = np.column_stack([system.border, by_p])
+    left = np.column_stack([system.border, row])
+    return Bordered(system.band, right, corner, left)
+
+
+def _correct(chain: Chain, path: Path, now: Point, along: Tangent, length: float) -> tuple[Point, int] | None:
+    """Newton's method in the plane across a direction, a length away from a point."""
+    k = len(chain.weight)
+    shape = chain.moved(now.shape, length * along.change)
+    ds = length * along.multipliers
+    torque = shape.torque + float(ds[k]) if chain.rotation_held else shape.torque
+    shape = shape._replace(reaction=shape.reaction + ds[:k], torque=torque)
+    p = now.p + length * along.p
+    before = math.inf
+    for corrections in range(MOST_CORRECTIONS + 1):
+        controls = path.at(p)
+        if not chain.rotation_held:
+            shape = shape._replace(torque=controls.torque)
+        system = chain.system(shape, controls)
+        if not np.isfinite(system.residual).all():
+            return None
+        size = imbalance(chain, shape, controls, system)
+        if settled(size, before):
+            return _point(chain, path, p, shape, system, along), corrections
+        solver = _across(chain, path, shape, system, along)
+        dq, more = solver.solve(-system.residual, np.concatenate([-system.gap, [0.0]]))
+        if not np.isfinite(dq).all() or float(dq @ dq) > chain.twisted_length:
+            return None
+        shape, before = step(chain, shape, system, dq, more), size
+        p += float(more[-1])
+    return None
+
+
+def _land(chain: Chain, path: Path, before: Point, after: Point) -> Point | None:
+    """The point at p = 1 between two others."""
+    near = before if 1.0 - before.p < after.p - 1.0 else after
+    found = newton(chain, near.shape, path.at(1.0))
+    return None if found is None else _point(chain, path, 1.0, *found, before.tangent)

@@ -1,0 +1,277 @@
+"""Shapes of least energy of a fiber that is bent and twisted at its ends.
+
+The twist device of thesis 3.4 and 3.11: a straight fiber of length L is gripped at both ends, each grip
+turns freely about an axis z across the line x of the ends, so that end tangents stay in the plane xy and
+feel no moment about z. The fiber is twisted, which fixes its total twist Tw, uniform along it, and its
+ends are brought to a distance from each other.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import j0
+
+from torsade.arrays import Floats
+from torsade.assembly import Assembly, State, assemble, initial_state
+from torsade.errors import TorsadeError
+from torsade.motion.branches import Path, carry, fold, follow
+from torsade.motion.chain import Chain, Controls, Shape
+from torsade.motion.spectrum import lowest, unstable_modes
+from torsade.motion.supports import Fiber, Support, chain, controls_at, shape_along
+from torsade.motion.trust import minimise
+from torsade.rod.elasticity import hinge_curvature
+
+__all__ = ["Bent", "Limits", "bent", "bent_until", "limit_curvature"]
+
+PIVOT = Support("plane")
+"""A grip of the twist device."""
+
+STRAIGHT = 1e-9
+"""End shortening, in units of L, below which a fiber is as good as straight: kappa L is then 2e-4."""
+
+FEWEST_EDGES = 4
+
+ACCURACY = 1e-9
+"""Relative error of a curvature that is asked for."""
+
+
+class Bent(NamedTuple):
+    """An equilibrium in the twist device.
+
+    Attributes
+    ----------
+    fiber : what is bent
+    x : (n_nodes, 3) nodes, the first at the origin, the last at (end_distance, 0, 0) [m]
+    kappa : (n_nodes,) curvature, the ends included [1/m]
+    total_twist : Tw [rad]
+    rotation : how far one grip was turned against the other [rad]
+    thrust : force that pushes the ends towards each other [N]
+    force : (3,) force of the grip on the last end [N]
+    torque : twisting moment [N m]
+    unstable : number of motions that would lower the energy, with the ends and both grips held
+    shape : edges and multipliers, grips included, in units of L and B
+    """
+
+    fiber: Fiber
+    x: Floats
+    kappa: Floats
+    total_twist: float
+    rotation: float
+    thrust: float
+    force: Floats
+    torque: float
+    unstable: int
+    shape: Shape
+
+    @property
+    def end_distance(self) -> float:
+        """Distance of the ends [m]."""
+        return float(self.x[-1, 0])
+
+    @property
+    def grips(self) -> tuple[Floats, Floats]:
+        """Directions of the fiber at its two ends, unit vectors (3,)."""
+        first, last = self.shape.edge[0], self.shape.edge[-1]
+        return first / np.linalg.norm(first), last / np.linalg.norm(last)
+
+    @property
+    def kappa_max(self) -> float:
+        """Largest curvature [1/m]."""
+        return float(self.kappa.max())
+
+    @property
+    def out_of_plane(self) -> float:
+        """Largest distance from the plane of the end tangents [m]."""
+        return float(np.abs(self.x[:, 2]).max())
+
+    @property
+    def stable(self) -> bool:
+        """Whether energy is least, with the ends and both grips held."""
+        return self.unstable == 0
+
+    @property
+    def energy_bend(self) -> float:
+        """Bending energy [J]."""
+        l = np.full(len(self.kappa), self.fiber.length / self.fiber.edges)
+        l[[0, -1]] *= 0.5
+        return float(0.5 * self.fiber.B * (l * self.kappa**2).sum())
+
+    @property
+    def energy_twist(self) -> float:
+        """Twist energy [J]."""
+        return 0.5 * self.torque * self.total_twist
+
+    def stiffness(self) -> float:
+        """Least eigenvalue of the constrained Hessian with the ends and both grips held [N]."""
+        problem = _device(self.fiber.edges, self.fiber.C / self.fiber.B, rotation_held=True)
+        d = self.end_distance / self.fiber.length
+        system = problem.system(self.shape, controls_at(problem, (d, 0.0, 0.0), rotation=self.rotation))
+        return self.fiber.B / self.fiber.length**2 * float(lowest(problem, system)[0][0])
+
+    def assembled(self) -> tuple[Assembly, State]:
+        """Index arrays and a state at rest, evenly twisted, for whoever lets the fiber go on from here."""
+        a = assemble([self.x])
+        state = initial_state(a, [self.x])
+        state.theta[:] = self.total_twist / self.fiber.length * a.edge_arclength
+        return a, state
+
+
+def bent(fiber: Fiber, end_distance: float, total_twist: float = 0.0, near: Bent | None = None) -> Bent:
+    """The equilibrium at an end distance [m] and a total twist [rad], on the branch of the planar one.
+
+    The untwisted fiber is bent first, in the plane of its end tangents and towards +y, then twisted. With an
+    equilibrium `near` of the same fiber the path starts there, and is shorter.
+
+    Raises
+    ------
+    TorsadeError
+        When the ends are as far apart as the fiber is long, or there is no such equilibrium.
+    """
+    d = end_distance / fiber.length
+    if not 0.0 <= d <= 1.0 - STRAIGHT:
+        raise TorsadeError(
+            f"ends {end_distance:g} m apart are not those of a bent fiber of length {fiber.length:g} m; give "
+            "a distance from 0 to less than its length."
+        )
+    problem = _device(fiber.edges, fiber.C / fiber.B)
+    if near is None:
+        begin = controls_at(problem, (d, 0.0, 0.0))
+        shape = minimise(problem, _arch(problem, d), begin)
+    else:
+        begin = controls_at(problem, (near.end_distance / fiber.length, 0.0, 0.0), torque=near.shape.torque)
+        shape = near.shape
+    goal = controls_at(problem, (d, 0.0, 0.0), torque=problem.C * total_twist)
+    return _measured(fiber, problem, _followed(problem, shape, Path(begin, goal), total_twist), goal)
+
+
+def bent_until(fiber: Fiber, kappa_max: float, total_twist: float = 0.0, near: Bent | None = None) -> Bent:
+    """The equilibrium at which the largest curvature [1/m] is reached, at a total twist [rad].
+
+    The end distance is found by secants in the square root of the end shortening, of which the curvature of a
+    nearly straight fiber is a multiple.
+
+    Raises
+    ------
+    TorsadeError
+        When no end distance gives this curvature.
+    """
+    wanted = kappa_max * fiber.length
+    if not wanted > 0.0:
+        raise TorsadeError(f"a largest curvature of {kappa_max:g} 1/m is none; give one above 0.")
+
+    def at(root: float, start: Bent | None) -> Bent:
+        return bent(fiber, fiber.length * (1.0 - root * root), total_twist, start)
+
+    def off(found: Bent) -> float:
+        return found.kappa_max * fiber.length - wanted
+
+    roots = [min(wanted / (2.0 * math.pi), 0.95)]
+    found = at(roots[0], near)
+    errors = [off(found)]
+    roots.append(min(roots[0] * wanted / (errors[0] + wanted), 0.99))
+    for _ in range(20):
+        found = at(roots[-1], found)
+        errors.append(off(found))
+        if abs(errors[-1]) <= ACCURACY * wanted:
+            return found
+        slope = (errors[-1] - errors[-2]) / (roots[-1] - roots[-2])
+        roots.append(min(max(roots[-1] - errors[-1] / slope, 0.5 * roots[-1]), 0.5 + 0.5 * roots[-1], 1.0))
+    raise TorsadeError(
+        f"no end distance bends a fiber of length {fiber.length:g} m to a curvature of {kappa_max:g} 1/m at "
+        f"a total twist of {total_twist:g} rad; give a smaller one."
+    )
+
+
+class Limits(NamedTuple):
+    """A curvature that follows from a measured distance [1/m], and the range that its error leaves."""
+
+    value: float
+    low: float
+    high: float
+
+
+def limit_curvature(
+    fiber: Fiber, end_distance: float, total_twist: float = 0.0, error: float = 0.0
+) -> Limits:
+    """Largest curvature of a fiber seen to break at an end distance [m], known within an error [m].
+
+    The range is that between the two distances: curvature falls as the ends part, and steeply when the fiber
+    is nearly straight, so that it is not symmetric. At a distance of the fiber's length there is none.
+
+    Raises
+    ------
+    TorsadeError
+        As by `bent`, for the distance itself and for the smaller one.
+    """
+    here = bent(fiber, end_distance, total_twist)
+    if error == 0.0:
+        return Limits(here.kappa_max, here.kappa_max, here.kappa_max)
+    high = bent(fiber, max(end_distance - error, 0.0), total_twist, here).kappa_max
+    far = end_distance + error
+    straight = far > fiber.length * (1.0 - STRAIGHT)
+    low = 0.0 if straight else bent(fiber, far, total_twist, here).kappa_max
+    return Limits(here.kappa_max, low, high)
+
+
+def _device(edges: int, C: float, *, rotation_held: bool = False) -> Chain:
+    """The twist device in units of L and B."""
+    if edges < FEWEST_EDGES:
+        raise TorsadeError(f"{edges} edges are too few for a bent fiber; give at least {FEWEST_EDGES}.")
+    return chain(Fiber(edges=edges, C=C), (PIVOT, PIVOT), rotation_held=rotation_held)
+
+
+def _arch(problem: Chain, d: float) -> Shape:
+    """An arch over the distance d: its angle is a cosine, of which the mean direction is J_0."""
+    s = np.clip(problem.assembly.edge_arclength, 0.0, 1.0)
+    angle = float(brentq(lambda a: j0(a) - d, 0.0, 3.8)) * np.cos(math.pi * s)
+    return shape_along(problem, np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle]))
+
+
+def _followed(problem: Chain, shape: Shape, path: Path, total_twist: float) -> Shape:
+    """The shape at the end of a path, in one step if it is short."""
+    at_once = carry(problem, shape, path)
+    if at_once is not None:
+        return at_once
+    before = point = None
+    for point in follow(problem, shape, path):
+        if point.p == 1.0:
+            return point.shape
+        if point.tangent.p <= 0.0:
+            break
+        before = point
+    if before is not None and point is not None:
+        before = fold(problem, path, before, point) if point.tangent.p <= 0.0 else before
+    last = path.start if before is None else path.at(before.p)
+    snaps = math.degrees(last.torque / problem.C)
+    raise TorsadeError(
+        f"no arch holds a total twist of {math.degrees(total_twist):.5g} deg at an end distance of "
+        f"{path.stop.value[0]:.5g} lengths: there it snaps at {snaps:.4g} deg; give less twist."
+    )
+
+
+def _measured(fiber: Fiber, problem: Chain, shape: Shape, controls: Controls) -> Bent:
+    """An equilibrium in the units of its fiber."""
+    L, force = fiber.length, fiber.B / fiber.length**2
+    x = L * np.concatenate([np.zeros((1, 3)), np.cumsum(shape.edge[1:-1], axis=0)])
+    kappa = np.empty(len(problem.assembly.hinges))
+    tangent = shape.edge / np.linalg.norm(shape.edge, axis=1)[:, None]
+    hinge_curvature(problem.assembly, tangent, kappa)
+    rotation = problem.rotation(shape)
+    gripped = problem._replace(rotation_held=True)
+    system = gripped.system(shape, controls._replace(rotation=rotation))
+    return Bent(
+        fiber=fiber,
+        x=x,
+        kappa=kappa / L,
+        total_twist=problem.total_twist(shape),
+        rotation=rotation,
+        thrust=-force * float(shape.reaction[0]),
+        force=force * shape.reaction,
+        torque=fiber.B / L * shape.torque,
+        unstable=unstable_modes(gripped, system),
+        shape=shape,
+    )
