@@ -124,7 +124,8 @@ def _batches(specs: Mapping[str, Spec]) -> list[list[str]]:
     """Labels of runs that start from the same drawing, together: one process builds that once."""
     found: dict[object, list[str]] = {}
     for label, spec in specs.items():
-        shape = (spec.knot, getattr(spec, "pulled", None)) if spec.knot is not None else label
+        knot = getattr(spec, "knot", None)
+        shape = label if knot is None else (knot, getattr(spec, "pulled", None))
         found.setdefault(shape, []).append(label)
     return list(found.values())
 
