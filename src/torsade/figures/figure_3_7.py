@@ -46,7 +46,7 @@ def measure(results: Mapping[str, Result], choice: Choice) -> Mapping[str, Table
 def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Choice, path: Path) -> None:
     """Write the picture."""
     with require("matplotlib").rc_context(panels.STYLE):
-        figure = panels.new_figure(7.2, 2.9)
+        figure = panels.new_figure(7.4, 2.6)
         axes = figure.subplots(1, 3)
         _curvatures(axes[0], tables["trials"])
         for law, colour, label in LAWS:
@@ -66,15 +66,24 @@ def _curvatures(axes: Any, table: Table) -> None:
         c["speed_mm_per_s"], c["limit_curvature_per_m"], c=c["pieces"], cmap="viridis_r", s=16,
         edgecolors="white", linewidths=0.4, zorder=3,
     )  # fmt: skip
-    bar = axes.figure.colorbar(points, ax=axes, location="top", aspect=18, shrink=0.75, pad=0.04)
-    bar.set_label("pieces", fontsize=7)
+    bar = axes.figure.colorbar(points, ax=axes, aspect=25, pad=0.02)
+    bar.set_label("pieces")
     bar.outline.set_visible(False)
-    bar.ax.xaxis.set_major_locator(require("matplotlib.ticker").MaxNLocator(5, integer=True))
+    bar.ax.yaxis.set_major_locator(require("matplotlib.ticker").MaxNLocator(5, integer=True))
     means = breaking.mean_by(list(c["speed_mm_per_s"]), list(c["limit_curvature_per_m"]))
-    axes.plot([v for v, _ in means], [m.value for _, m in means], "_", color="#d6569a", markersize=9)
+    axes.plot(
+        [v for v, _ in means],
+        [m.value for _, m in means],
+        "_",
+        color="#d6569a",
+        markersize=9,
+        markeredgewidth=1.8,
+        zorder=4,
+    )
     axes.axhline(float(c["limit_curvature_per_m"].mean()), color=panels.INK, linewidth=0.8)
     axes.set_xscale("log")
     axes.set_ylim(0, 16)
+    axes.yaxis.set_major_locator(require("matplotlib.ticker").MultipleLocator(4))
     axes.set_xlabel("quench speed v (mm/s)")
     axes.set_ylabel("limit curvature (1/m)")
 

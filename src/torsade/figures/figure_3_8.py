@@ -46,18 +46,18 @@ def measure(results: Mapping[str, Result], choice: Choice) -> Mapping[str, Table
 def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Choice, path: Path) -> None:
     """Write the picture."""
     with require("matplotlib").rc_context(panels.STYLE):
-        figure = panels.new_figure(7.2, 5.6)
-        grid = figure.subplots(2, 2)
-        draw_trials(grid[0, 0], tables["trials"], 2)
-        draw_sectors(grid[0, 1], tables[""], 2)
+        figure = panels.new_figure(7.2, 5.4)
+        grid = figure.subplot_mosaic("AB;EE", height_ratios=(1.0, 0.8))
+        draw_trials(grid["A"], tables["trials"], 2)
+        draw_sectors(grid["B"], tables[""], 2)
         for which, colour in ((1, "#2f6fa8"), (2, "#b5475c")):
             rod = breaking.RODS[which]
             label = f"{100 * rod.L:.0f} cm, {2e3 * rod.h:.1f} mm"
-            quench.draw_breaks(grid[1, 0], tables[f"speeds-{which}"], colour, label)
-        grid[1, 0].legend(frameon=False, fontsize=6.5, loc="upper left")
-        grid[1, 1].axis("off")
-        for axes, mark in ((grid[0, 0], "A"), (grid[0, 1], "B"), (grid[1, 0], "E")):
-            panels.letter(axes, mark, -0.14)
+            quench.draw_breaks(grid["E"], tables[f"speeds-{which}"], colour, label)
+        grid["E"].legend(frameon=False, fontsize=6.5, loc="upper left")
+        grid["E"].set_ylim(0, None)
+        for mark, axes in grid.items():
+            panels.letter(axes, mark, -0.06 if mark == "E" else -0.14)
         panels.save(figure, path)
 
 

@@ -18,6 +18,7 @@ from torsade.figures.base import Cell, Choice, Table
 from torsade.fracture.fits import Fit, power_law, saturation
 from torsade.fracture.statistics import mean, smallest_fragment
 from torsade.fracture.theory.quench import fracture_sites, fragment_length
+from torsade.view._extra import require
 
 if TYPE_CHECKING:
     from torsade.protocols.snap_quench import SnapQuench
@@ -154,5 +155,6 @@ def draw_breaks(axes: Any, table: Table, colour: str, label: str) -> None:
         curve = fit["limit"].value * fracture_sites(1e-3 * fine, fit["B_squared"].value)
         axes.plot(fine, curve, color=colour, linewidth=0.9, linestyle=(0, (4, 2)))
     axes.set_xscale("log")
+    axes.yaxis.set_major_locator(require("matplotlib.ticker").MaxNLocator(integer=True))
     axes.set_xlabel("quench speed v (mm/s)")
     axes.set_ylabel(r"number of breaks $N_f$")
