@@ -1,14 +1,14 @@
 """Results: labelled arrays with what was asked and what came of it, in zarr folders that anyone can open.
 
 A result is an `xarray.Dataset` in SI units. Histories have the dimension `time`; `twist` also `fiber`.
-Frames are `position (time, node, space)` [m] and `log_strain (time, node)`, stored in single precision;
-Samples, `sample_time (sample)` [s] and `sample_separation (sample)` [m], are finer in time and do not
-depend on frames: what a run concludes comes from them. `node_start (fiber_bound)` says where each fiber
-begins, `closed (fiber)` which are closed.
+Frames are `position (time, node, space)` [m], `log_strain (time, node)` and its parts `strain_stretch`,
+`strain_bend` and `strain_twist`, stored in single precision. Samples, `sample_time (sample)` [s] and
+`sample_separation (sample)` [m], are finer in time and do not depend on frames: what a run concludes comes
+from them. `node_start (fiber_bound)` says where each fiber begins, `closed (fiber)` which are closed.
 
 The attributes hold `protocol`, `spec` and `model` (JSON: what was asked, and the numbers that it meant),
-`knot`, `radius` [m], `versions`, `created`, `status`, `done` (frames), `sampled`, `steps`, `wall_s`, and
-what the protocol concludes, such as `c_f`.
+`knot` where there is one, `radius` [m], `versions`, `created`, `status`, `done` (frames), `sampled`, `steps`,
+`wall_s`, and what the protocol concludes, such as `c_f`.
 """
 
 from __future__ import annotations
@@ -153,7 +153,8 @@ class Result:
     def __repr__(self) -> str:
         attrs = self._dataset.attrs
         last = float(self._dataset["time"][-1]) if self.frames else 0.0
-        return f"<Result of {attrs['protocol']} on {attrs.get('knot', 'a rod')}: {self.frames} frames to t = {last:.4g} s>"
+        what = f" on {attrs['knot']}" if "knot" in attrs else ""
+        return f"<Result of {attrs['protocol']}{what}: {self.frames} frames to t = {last:.4g} s>"
 
 
 def open_result(path: str | Path) -> Result:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
+
+from torsade.errors import counted
 
 if TYPE_CHECKING:
     from torsade.results import Result
@@ -20,7 +23,12 @@ WIDTH = 24
 
 def print_table(result: Result, report: dict[str, Any]) -> None:
     """Print what was done and what came of it."""
-    print_rows((*_asked(result), *_found(result, report), *_spent(report)))
+    from torsade.cli.rods_table import ROWS
+
+    if result.protocol in ROWS:
+        print_rows(ROWS[result.protocol](result, report))
+    else:
+        print_rows((*_asked(result), *_found(result, report), *_spent(report)))
 
 
 def print_file(what: str, path: str) -> None:
@@ -59,19 +67,26 @@ def _cell(cell: float | int | str | bool | None) -> str:
 def _asked(result: Result) -> Iterator[tuple[str, str]]:
     spec, attrs = result.spec, result.dataset.attrs
     yield "protocol", result.protocol
-    yield "knot", str(attrs["knot"])
+    if "knot" in attrs:
+        yield "move" if result.protocol == "reidemeister" else "knot", str(attrs["knot"])
     if "pulled" in attrs:
         yield "pulled", f"{attrs['pulled'][:2]} clamped, {attrs['pulled'][2:]} pulled"
-    yield "preset", spec["preset"]
+    if "preset" in spec:
+        yield "preset", spec["preset"]
     yield "fiber", f"{spec['material']}, radius {1e3 * attrs['radius']:g} mm"
-    yield "force", f"{spec['force']:g} N for {spec['duration']:g} s"
+    if "force" in spec:
+        yield "force", f"{spec['force']:g} N for {spec['duration']:g} s"
 
 
 def _found(result: Result, report: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    if "separation_m" in report:
+    if result.protocol == "prison-escape":
         yield from _escape(report, result.last_held, result.spec["duration"])
+    elif result.protocol == "tighten":
+        yield from _tightened(report, "until_still" in result.spec)
+    elif result.protocol == "bend-twist":
+        yield from _bent(report)
     else:
-        yield from _tightened(report)
+        yield from _moved(report)
 
 
 def _escape(report: dict[str, Any], held: int, duration: float) -> Iterator[tuple[str, str]]:
@@ -89,9 +104,11 @@ def _escape(report: dict[str, Any], held: int, duration: float) -> Iterator[tupl
     yield "twist", f"{twist} {at}"
 
 
-def _tightened(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    times = report["times_s"]
+def _tightened(report: dict[str, Any], awaited: bool) -> Iterator[tuple[str, str]]:
+    times, still = report["times_s"], report["still_at_s"]
     at = f"at {times[-1]:.3g} s"
+    if awaited:
+        yield "still", f"no, not within {times[-1]:g} s" if still is None else f"at {still:.3g} s"
     yield "end to end", _span(report["end_to_end_m"], times)
     yield "length", _span(report["length_m"], times)
     yield "largest h kappa", f"{report['h_kappa_max'][-1]:.3f} {at}"
@@ -99,8 +116,41 @@ def _tightened(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
     yield "largest log strain", f"{report['max_log_strain'][-1]:.3f} {at}"
 
 
+def _moved(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Energies in units of B/L, bending stiffness over free length."""
+    unit, crossings = report["B_over_L_J"], report["crossings"]
+    way = 1e3 * report["displacement_m"][-1]
+    yield "strands", f"{1e3 * report['length_m']:g} mm from grip to grip, ends {report['ends']}"
+    yield "way of moved ends", f"{way:.2f} mm in {report['times_s'][-1]:g} s"
+    yield "crossings", f"{crossings[0]} at the start, {crossings[-1]} at the end"
+    yield "unit of energy B/L", f"{unit:.3g} J"
+    yield "energy at the start", f"{report['energy_start_J'] / unit:.3f} B/L"
+    yield (
+        "highest energy",
+        f"{report['energy_top_J'] / unit:.3f} B/L, after {1e3 * report['top_at_m']:.2f} mm",
+    )
+    yield "energy at the end", f"{report['energy_end_J'] / unit:.3f} B/L"
+
+
+def _bent(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Lengths in mm, as they are measured on a table."""
+    turned, span = math.degrees(report["end_rotation_rad"]), report["kappa_max_range_per_m"]
+    within = "" if span is None else f", between {span[0]:.4g} and {span[1]:.4g} 1/m"
+    yield "length", f"{1e3 * report['length_m']:g} mm, ends {1e3 * report['end_distance_m']:g} mm apart"
+    yield "twist", f"{math.degrees(report['twist_rad']):g} deg; grips turned by {turned:.2f} deg"
+    yield "largest curvature", f"{report['kappa_max_per_m']:.5g} 1/m{within}"
+    yield "curvature at the ends", f"{report['kappa_end_per_m']:.4g} 1/m"
+    yield "thrust", f"{report['thrust_N']:.4g} N"
+    yield "out of plane", f"{1e3 * report['out_of_plane_m']:.4g} mm"
+    yield "torque", f"{report['torque_N_m']:.4g} N m"
+    stable = report["stable"]
+    modes = report["unstable_motions"]
+    yield "stable", "yes" if stable else f"no, {counted(modes, 'motion')} would lower the energy"
+
+
 def _spent(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    yield "steps", f"{report['steps']}"
+    if "steps" in report:
+        yield "steps", f"{report['steps']}"
     yield "wall time", f"{report['wall_s']:.1f} s"
 
 

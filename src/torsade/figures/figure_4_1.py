@@ -102,7 +102,7 @@ def _speed(axes: Any, results: Mapping[str, Result], preset: Preset) -> tuple[fl
         if not held.all():
             axes.plot(t[held][-1], v[held][-1], "o", ms=3.5, color=colour, mec="white", mew=0.6)
         names.append(knot)
-        last.append(float(np.log10(np.median(v[-5:] if held.all() else v[held][-5:]))))
+        last.append(float(np.log10(np.nanmedian(v[held][-5:]))))
         settled = v[held][len(v[held]) // 10 + 1 :]
         low, high = min(low, float(settled.min())), max(high, float(settled.max()))
     axes.set(yscale="log", xlabel="time (s)", ylabel="speed of the pulled end (mm/s)", title=preset)

@@ -77,7 +77,8 @@ def _said(row: Mapping[str, Cell], choice: Choice, rows: Mapping[Any, Mapping[st
         "$c_f$ = " + ", ".join(f"{float(str(x)):.1f}" for x in c_f if x is not None),
     ]
     if row["rotation_rad"] is not None:
-        lines[1] += f", turns {float(row['rotation_rad']):.2f} rad".replace("-", "−")
+        turned = round(float(row["rotation_rad"]), 2) + 0.0
+        lines[1] += f", turns {turned:.2f} rad".replace("-", "−")
     return "\n".join(lines)
 
 
@@ -113,7 +114,7 @@ def _draw_rules(axes: Any, table: Table, choice: Choice) -> None:
     axes.set_yticks(range(len(names)), [_printed(rule) for rule in names], fontsize=7)
     axes.set(xlim=(-0.75, 1.0), ylim=(len(names) - 0.5, -0.6), xlabel=r"Kendall's $\tau_b$ with $c_f$")
     axes.tick_params(axis="y", length=0)
-    axes.set_title("right : wrong pairs", fontsize=6, loc="right", x=1.07)
+    axes.set_title("right : wrong pairs", fontsize=6, loc="right", x=1.05)
     panels.letter(axes, "H", -0.22)
 
 

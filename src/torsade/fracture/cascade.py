@@ -1,9 +1,9 @@
-"""The fracture cascade: a bent and twisted rod breaks, and its pieces break again in the waves of the release.
+"""The fracture cascade: a bent, twisted rod breaks, and its pieces break again in the waves of the release.
 
 A hinge breaks in the step in which its stress comes to its strength: its node is split in two, each with its
 half of the mass and the velocity of the whole. Every piece breaks at most once in a step, where stress over
-strength is largest. Once the rod is broken, no break is nearer than the least fragment length lambda to an end
-of its piece (thesis 3.3). Both sides of every break are followed; pieces that no end holds go on, or stop (thesis Fig 3-1C).
+strength is largest. Once the rod is broken, no break is nearer than the least fragment length lambda to an
+end of its piece (thesis 3.3). Both sides of every break are followed; pieces that no end holds go on, or stop (thesis Fig 3-1C).
 """
 
 from __future__ import annotations
@@ -71,8 +71,8 @@ def strengths(
     """Strength of every hinge of a rod [Pa], shape (n_hinges,), from its edge lengths (n_edges,) [m].
 
     The rod consists of grains of one length, each as strong as sigma_c (1 + disorder xi), xi normally
-    distributed, at least a tenth of sigma_c; a hinge is as strong as the weakest grain within the halves of the
-    two edges that it stands for. So the same seed is the same rod at every number of nodes.
+    distributed, at least a tenth of sigma_c; a hinge is as strong as the weakest grain within the halves of
+    the two edges that it stands for. So the same seed is the same rod at every number of nodes.
 
     Parameters
     ----------
@@ -158,7 +158,7 @@ class Cascade:
         return self.motion.assembly.fiber_length.copy()
 
     def advance(self, until: float, max_steps: int = 2**62) -> Outcome:
-        """Advance to the first step at the time until [s] or after, in at most max_steps steps, breaking on the way.
+        """Advance to the first step at the time until [s] or after, in at most max_steps steps; break on the way.
 
         Raises
         ------
@@ -222,7 +222,7 @@ class Cascade:
         m.boundary = m.boundary._replace(held=held, turned=turned)
 
     def _bears(self) -> Bearing:
-        """What hinges bear, infinite stress where a break would make too short a piece, or in frozen pieces."""
+        """What hinges bear: any stress where a break would make too short a piece, or in frozen pieces."""
         a, held = self.motion.assembly, self.motion.boundary.held
         along = a.edge_arclength[a.hinges[:, 0]] + 0.5 * a.rest_length[a.hinges[:, 0]]
         shorter = np.minimum(along, a.fiber_length[a.edge_fiber[a.hinges[:, 0]]] - along)

@@ -63,13 +63,20 @@ def breaking_shape(
     wanted = float(bears.min())
     shape: Bent | None = None
     for _ in range(MOST_SHAPES):
-        shape = bent_until(fiber, wanted, total_twist, shape)
+        try:
+            shape = bent_until(fiber, wanted, total_twist, shape)
+        except TorsadeError:
+            raise TorsadeError(
+                f"the rod would break at a curvature of {wanted:.4g} 1/m, and one of length "
+                f"{1e3 * fiber.length:.4g} mm does not bend so far at this twist; give a smaller sigma_c or a "
+                "longer rod"
+            ) from None
         share = shape.kappa[1:-1] / bears
         weakest = int(np.argmax(share))
         if abs(share[weakest] - 1.0) <= ACCURACY:
             return shape, weakest
         wanted /= float(share[weakest])
     raise TorsadeError(
-        f"no bending breaks a rod of length {fiber.length:g} m at a twist of {math.degrees(total_twist):.4g} deg; "
-        "give less disorder, or a smaller sigma_c"
+        f"no bending breaks a rod of length {fiber.length:g} m at a twist of "
+        f"{math.degrees(total_twist):.4g} deg; give less disorder, or a smaller sigma_c"
     )

@@ -3,7 +3,8 @@
 A path runs through controls from `start` (p = 0) to `stop` (p = 1). Points on it are found by
 pseudo-arclength continuation (Keller 1977): a step along the tangent, then Newton's method in the plane
 across it, in which the share p is unknown too, so that folds, where a load is largest, are passed like
-any other point. The metric of a step is the mean square of the angle that edges turn by, plus dp^2.
+any other point. The metric of a step is the mean square of the angle that edges turn by, plus the square
+of the change of the controls in their natural units.
 """
 
 from __future__ import annotations
@@ -19,12 +20,16 @@ from torsade.arrays import Floats
 from torsade.motion.bordered import Bordered
 from torsade.motion.chain import Chain, Controls, Shape, System
 from torsade.motion.spectrum import lowest, unstable_modes
-from torsade.motion.trust import TOLERANCE, imbalance, newton, step
+from torsade.motion.trust import imbalance, newton, settled, step
 
-__all__ = ["Path", "Point", "bifurcation", "carry", "follow", "switch"]
+__all__ = ["Path", "Point", "bifurcation", "carry", "fold", "follow", "switch"]
 
 SMALLEST_STEP = 1e-6
 MOST_CORRECTIONS = 8
+
+
+class _Lost(Exception):
+    """A branch could not be followed."""
 
 
 class Path(NamedTuple):
@@ -41,6 +46,13 @@ class Path(NamedTuple):
     def rate(self) -> Controls:
         """How the controls change with p."""
         return self.start.to(self.stop)
+
+    def size(self, chain: Chain) -> float:
+        """How far controls change from end to end, in units of B and L and in radians; never nothing."""
+        L, rate = chain.twisted_length, self.rate
+        force = float(np.abs(rate.load).max()) * L**2 / chain.B
+        place = float(np.linalg.norm(rate.value)) / L
+        return math.hypot(force, place, rate.torque * L / chain.B, rate.rotation, 1e-6)
 
 
 class Tangent(NamedTuple):
@@ -73,8 +85,8 @@ def follow(
     shape: Shape,
     path: Path,
     *,
-    first: float = 0.05,
-    largest: float = 0.3,
+    first: float = 0.2,
+    largest: float = 0.5,
     most: int = 500,
     tangent: Tangent | None = None,
     p: float = 0.0,
@@ -90,7 +102,7 @@ def follow(
     now, length = begun, first
     yield now
     for _ in range(most):
-        found = _advance(chain, path, now, length)
+        found = _correct(chain, path, now, now.tangent, length)
         if found is None:
             length *= 0.5
             if length < SMALLEST_STEP:
@@ -109,19 +121,35 @@ def follow(
         length = min(largest, length * (1.5 if corrections <= 3 else 1.0 if corrections <= 5 else 0.7))
 
 
-LONGEST_AT_ONCE = 0.15
-"""Predicted change of shape up to which a path is taken in one step: mean square angle of edges [rad]."""
+def fold(chain: Chain, path: Path, before: Point, after: Point) -> Point:
+    """The last point before the branch turns back between two points, in controls to a millionth."""
+    now, length = before, 0.5 * _distance(chain, path, before, after)
+    while length > 1e-3:
+        found = _correct(chain, path, now, now.tangent, length)
+        if found is None or found[0].tangent.p <= 0.0:
+            length *= 0.5
+        else:
+            now = found[0]
+    return now
+
+
+LONGEST_AT_ONCE = 0.15, 0.7
+"""Up to which a path is taken in one step: the angle that edges turn by [rad], and the change of controls in
+units of B and L."""
 
 
 def carry(chain: Chain, shape: Shape, path: Path) -> Shape | None:
     """The equilibrium at the end of a short path, in one predicted step; None when it is not short."""
+    turn, change = LONGEST_AT_ONCE
+    if path.size(chain) > change:
+        return None
     begun = _at(chain, shape, path, 0.0, None)
     if begun is None or begun.tangent.p <= 0.0:
         return None
     whole = 1.0 / begun.tangent.p
     k, tangent = len(chain.weight), begun.tangent
     angle = whole * float(np.linalg.norm(tangent.change[:, :3])) / math.sqrt(len(shape.edge))
-    if angle > LONGEST_AT_ONCE * float(np.linalg.norm(shape.edge, axis=1).max()):
+    if angle > turn * float(np.linalg.norm(shape.edge, axis=1).max()):
         return None
     moved = chain.moved(begun.shape, whole * tangent.change)
     reaction = moved.reaction + whole * tangent.multipliers[:k]
@@ -136,26 +164,28 @@ def bifurcation(chain: Chain, path: Path, before: Point, after: Point) -> tuple[
     """
     if before.unstable == after.unstable or before.tangent.p * after.tangent.p <= 0:
         return None
-    number = max(before.unstable, after.unstable)
-    shape = before.shape
+    first, number = sorted((before.unstable, after.unstable))
+    modes = lowest(chain, chain.system(before.shape, path.at(before.p)), number)[1][first:]
+
+    def at(p: float) -> tuple[Shape, System]:
+        share = (p - before.p) / (after.p - before.p)
+        near = before.shape if share < 0.5 else after.shape
+        found = newton(chain, near, path.at(p), still=modes)
+        if found is None:
+            raise _Lost
+        return found
 
     def critical(p: float) -> float:
-        nonlocal shape
-        found = newton(chain, shape, path.at(p))
-        if found is None:
-            return math.nan
-        shape = found[0]
-        return float(lowest(chain, found[1], number)[0][-1])
+        return float(lowest(chain, at(p)[1], number)[0][first])
 
     try:
-        p = float(brentq(critical, before.p, after.p, xtol=1e-12, rtol=1e-12))
-    except ValueError:
+        if critical(before.p) * critical(after.p) > 0.0:
+            return None
+        p = float(brentq(critical, before.p, after.p, xtol=1e-13, rtol=1e-12))
+        shape, system = at(p)
+    except _Lost:
         return None
-    found = newton(chain, shape, path.at(p))
-    if found is None:
-        return None
-    mode = lowest(chain, found[1], number)[1][-1]
-    return before._replace(p=p, shape=found[0]), mode
+    return before._replace(p=p, shape=shape), lowest(chain, system, number)[1][first]
 
 
 def switch(chain: Chain, path: Path, at: Point, mode: Floats, amplitude: float) -> Point | None:
@@ -166,6 +196,13 @@ def switch(chain: Chain, path: Path, at: Point, mode: Floats, amplitude: float) 
     unit = Tangent(mode * math.sqrt(chain.twisted_length), np.zeros(chain.held), 0.0)
     found = _correct(chain, path, at, unit, amplitude)
     return None if found is None else found[0]
+
+
+def _distance(chain: Chain, path: Path, before: Point, after: Point) -> float:
+    """Length of the step between two points."""
+    turned = float(np.linalg.norm(after.shape.edge - before.shape.edge))
+    turned /= float(np.linalg.norm(after.shape.edge, axis=1).max()) * math.sqrt(len(after.shape.edge))
+    return math.hypot(turned, path.size(chain) * (after.p - before.p))
 
 
 def _at(chain: Chain, shape: Shape, path: Path, p: float, tangent: Tangent | None) -> Point | None:
@@ -182,7 +219,7 @@ def _point(chain: Chain, path: Path, p: float, shape: Shape, system: System, alo
     solver = _across(chain, path, shape, system, along)
     k = chain.held
     dq, ds = solver.solve(np.zeros(len(system.residual)), np.concatenate([np.zeros(k), [1.0]]))
-    norm = math.sqrt(float(dq @ dq) / chain.twisted_length + float(ds[k]) ** 2)
+    norm = math.hypot(np.linalg.norm(dq) / math.sqrt(chain.twisted_length), path.size(chain) * float(ds[k]))
     tangent = Tangent(system.lift(dq) / norm, ds[:k] / norm, float(ds[k]) / norm)
     return Point(p, shape, unstable_modes(chain, system), tangent)
 
@@ -194,16 +231,11 @@ def _across(chain: Chain, path: Path, shape: Shape, system: System, along: Tange
     corner = np.zeros((k + 1, k + 1))
     corner[:k, :k] = system.corner
     corner[:k, k] = gap_by_p
-    corner[k, k] = along.p
+    corner[k, k] = along.p * path.size(chain) ** 2
     row = system.lower(along.change) / chain.twisted_length
     right = np.column_stack([system.border, by_p])
     left = np.column_stack([system.border, row])
     return Bordered(system.band, right, corner, left)
-
-
-def _advance(chain: Chain, path: Path, now: Point, length: float) -> tuple[Point, int] | None:
-    """The next point, a step further along the tangent, and the corrections it took."""
-    return _correct(chain, path, now, now.tangent, length)
 
 
 def _correct(chain: Chain, path: Path, now: Point, along: Tangent, length: float) -> tuple[Point, int] | None:
@@ -214,6 +246,7 @@ def _correct(chain: Chain, path: Path, now: Point, along: Tangent, length: float
     torque = shape.torque + float(ds[k]) if chain.rotation_held else shape.torque
     shape = shape._replace(reaction=shape.reaction + ds[:k], torque=torque)
     p = now.p + length * along.p
+    before = math.inf
     for corrections in range(MOST_CORRECTIONS + 1):
         controls = path.at(p)
         if not chain.rotation_held:
@@ -221,13 +254,14 @@ def _correct(chain: Chain, path: Path, now: Point, along: Tangent, length: float
         system = chain.system(shape, controls)
         if not np.isfinite(system.residual).all():
             return None
-        if imbalance(chain, system) < TOLERANCE:
+        size = imbalance(chain, shape, controls, system)
+        if settled(size, before):
             return _point(chain, path, p, shape, system, along), corrections
         solver = _across(chain, path, shape, system, along)
         dq, more = solver.solve(-system.residual, np.concatenate([-system.gap, [0.0]]))
         if not np.isfinite(dq).all() or float(dq @ dq) > chain.twisted_length:
             return None
-        shape = step(chain, shape, system, dq, more)
+        shape, before = step(chain, shape, system, dq, more), size
         p += float(more[-1])
     return None
 

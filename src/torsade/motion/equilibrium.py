@@ -18,14 +18,14 @@ from scipy.special import j0
 from torsade.arrays import Floats
 from torsade.assembly import Assembly, State, assemble, initial_state
 from torsade.errors import TorsadeError
-from torsade.motion.branches import Path, carry, follow
+from torsade.motion.branches import Path, carry, fold, follow
 from torsade.motion.chain import Chain, Controls, Shape
 from torsade.motion.spectrum import lowest, unstable_modes
 from torsade.motion.supports import Fiber, Support, chain, controls_at, shape_along
 from torsade.motion.trust import minimise
 from torsade.rod.elasticity import hinge_curvature
 
-__all__ = ["Bent", "bent", "bent_until"]
+__all__ = ["Bent", "Limits", "bent", "bent_until", "limit_curvature"]
 
 PIVOT = Support("plane")
 """A grip of the twist device."""
@@ -92,6 +92,18 @@ class Bent(NamedTuple):
     def stable(self) -> bool:
         """Whether energy is least, with the ends and both grips held."""
         return self.unstable == 0
+
+    @property
+    def energy_bend(self) -> float:
+        """Bending energy [J]."""
+        l = np.full(len(self.kappa), self.fiber.length / self.fiber.edges)
+        l[[0, -1]] *= 0.5
+        return float(0.5 * self.fiber.B * (l * self.kappa**2).sum())
+
+    @property
+    def energy_twist(self) -> float:
+        """Twist energy [J]."""
+        return 0.5 * self.torque * self.total_twist
 
     def stiffness(self) -> float:
         """Least eigenvalue of the constrained Hessian with the ends and both grips held [N]."""
@@ -174,6 +186,37 @@ def bent_until(fiber: Fiber, kappa_max: float, total_twist: float = 0.0, near: B
     )
 
 
+class Limits(NamedTuple):
+    """A curvature that follows from a measured distance [1/m], and the range that its error leaves."""
+
+    value: float
+    low: float
+    high: float
+
+
+def limit_curvature(
+    fiber: Fiber, end_distance: float, total_twist: float = 0.0, error: float = 0.0
+) -> Limits:
+    """Largest curvature of a fiber seen to break at an end distance [m], known within an error [m].
+
+    The range is that between the two distances: curvature falls as the ends part, and steeply when the fiber
+    is nearly straight, so that it is not symmetric. At a distance of the fiber's length there is none.
+
+    Raises
+    ------
+    TorsadeError
+        As by `bent`, for the distance itself and for the smaller one.
+    """
+    here = bent(fiber, end_distance, total_twist)
+    if error == 0.0:
+        return Limits(here.kappa_max, here.kappa_max, here.kappa_max)
+    high = bent(fiber, max(end_distance - error, 0.0), total_twist, here).kappa_max
+    far = end_distance + error
+    straight = far > fiber.length * (1.0 - STRAIGHT)
+    low = 0.0 if straight else bent(fiber, far, total_twist, here).kappa_max
+    return Limits(here.kappa_max, low, high)
+
+
 def _device(edges: int, C: float, *, rotation_held: bool = False) -> Chain:
     """The twist device in units of L and B."""
     if edges < FEWEST_EDGES:
@@ -193,16 +236,21 @@ def _followed(problem: Chain, shape: Shape, path: Path, total_twist: float) -> S
     at_once = carry(problem, shape, path)
     if at_once is not None:
         return at_once
-    point = None
-    for point in follow(problem, shape, path):  # noqa: B007 - the last one is wanted
-        pass
-    if point is None or point.p != 1.0:
-        reached = 0.0 if point is None else path.at(min(point.p, 1.0)).torque / problem.C
-        raise TorsadeError(
-            f"no equilibrium with a total twist of {math.degrees(total_twist):.5g} deg was found at this end "
-            f"distance: its branch ends at {math.degrees(reached):.4g} deg; give less twist."
-        )
-    return point.shape
+    before = point = None
+    for point in follow(problem, shape, path):
+        if point.p == 1.0:
+            return point.shape
+        if point.tangent.p <= 0.0:
+            break
+        before = point
+    if before is not None and point is not None:
+        before = fold(problem, path, before, point) if point.tangent.p <= 0.0 else before
+    last = path.start if before is None else path.at(before.p)
+    snaps = math.degrees(last.torque / problem.C)
+    raise TorsadeError(
+        f"no arch holds a total twist of {math.degrees(total_twist):.5g} deg at an end distance of "
+        f"{path.stop.value[0]:.5g} lengths: there it snaps at {snaps:.4g} deg; give less twist."
+    )
 
 
 def _measured(fiber: Fiber, problem: Chain, shape: Shape, controls: Controls) -> Bent:

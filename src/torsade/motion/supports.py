@@ -8,6 +8,7 @@ of the edges. The grip's director is what an end's rotation is measured from.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -31,12 +32,12 @@ class Support:
     Attributes
     ----------
     tangent : "free"; "plane", confined to the plane across `normal` and free of moment in it, as by a pivot;
-        "fixed", clamped; "joined", free, but in the same direction as the other end
+        "fixed", clamped in the direction that it is given
     position : which of x, y, z are held; the first end is always held in all three
     normal : of the plane
     """
 
-    tangent: Literal["free", "plane", "fixed", "joined"] = "free"
+    tangent: Literal["free", "plane", "fixed"] = "free"
     position: tuple[bool, bool, bool] = (True, True, True)
     normal: tuple[float, float, float] = (0.0, 0.0, 1.0)
 
@@ -67,10 +68,15 @@ def chain(
     fiber: Fiber,
     ends: tuple[Support, Support],
     *,
+    nodes: Sequence[tuple[int, int]] = (),
     angles: bool = False,
     rotation_held: bool = False,
 ) -> Chain:
-    """The problem of a fiber between two supports; grips are edges at its ends."""
+    """The problem of a fiber between two supports; grips are edges at its ends.
+
+    nodes are further ones that are held, each with the coordinate (0, 1 or 2) that is. What is held comes in
+    this order: the coordinates of the last end, then those of nodes.
+    """
     first, last = ends
     before, after = int(first.gripped), int(last.gripped)
     n = fiber.edges + before + after
@@ -80,17 +86,15 @@ def chain(
     mass = l.copy()
     freedom = np.full(n, FREE if fiber.EA > 0 else SPHERE)
     normal = np.zeros((n, 3))
-    kinds = {"plane": PLANE, "fixed": FIXED, "joined": SPHERE}
+    kinds = {"plane": PLANE, "fixed": FIXED}
     for e, end in ((0, first), (n - 1, last)):
         if end.gripped:
             l[e], mass[e] = 0.0, GRIP_MASS * l[1]
             freedom[e], normal[e] = kinds[end.tangent], end.normal
-    rows = [np.eye(3)[c] for c in range(3) if last.position[c]]
-    weight = np.zeros((len(rows), n, 3))
-    for k, row in enumerate(rows):
-        weight[k, before : n - after] = row
-    if first.tangent == "joined":
-        weight = np.concatenate([weight, _joint(n, fiber.length)])
+    held = [(fiber.edges, c) for c in range(3) if last.position[c]] + list(nodes)
+    weight = np.zeros((len(held), n, 3))
+    for k, (node, c) in enumerate(held):
+        weight[k, before : before + node, c] = 1.0
     return Chain(
         assembly=_assembly(l),
         EA=fiber.EA,
@@ -103,14 +107,6 @@ def chain(
         angles=angles,
         rotation_held=rotation_held,
     )
-
-
-def _joint(n: int, length: float) -> Floats:
-    """Rows that keep the grips, which run along x at first, parallel: their y and z are the same."""
-    rows = np.zeros((2, n, 3))
-    for k, c in enumerate((1, 2)):
-        rows[k, 0, c], rows[k, -1, c] = length, -length
-    return rows
 
 
 def _assembly(l: Floats) -> Assembly:

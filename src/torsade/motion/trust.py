@@ -10,6 +10,7 @@ corrected to second order (Fletcher) before it is shortened.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -18,22 +19,30 @@ from torsade.errors import TorsadeError
 from torsade.motion.bordered import Bordered
 from torsade.motion.chain import Chain, Controls, Shape, System
 
-__all__ = ["imbalance", "minimise", "newton", "step"]
+__all__ = ["imbalance", "minimise", "newton", "settled", "step"]
 
-TOLERANCE = 1e-10
-"""Out-of-balance force, in units of B/L^2, and gap, in units of L, at which a shape is at equilibrium."""
+TOLERANCE, ROUND_OFF = 1e-10, 1e-7
+"""Out-of-balance force, in units of those that act, and gap, in units of L, at which a shape is at equilibrium:
+below the first, or below the second when it falls no further."""
 
 LARGEST_RADIUS = 1.0
 """Longest step, as the root mean square of the angle that edges turn by [rad]."""
 
 
-def imbalance(chain: Chain, system: System) -> float:
-    """Norm of what is out of balance, forces in units of B/L^2 and gaps in units of L (or radians)."""
+def imbalance(chain: Chain, shape: Shape, controls: Controls, system: System) -> float:
+    """Norm of what is out of balance: forces in units of those that act or B/L^2, gaps in units of L or radians."""
     L = chain.twisted_length
     k = len(chain.weight)
-    force = float(np.linalg.norm(system.residual)) / math.sqrt(L) * L**2 / chain.B
+    acting = float(np.abs(shape.reaction).max(initial=0.0)) + float(np.abs(controls.load).max(initial=0.0))
+    unit = acting + abs(shape.torque) / L + chain.B / L**2
+    force = float(np.linalg.norm(system.residual)) / math.sqrt(L) / unit
     gap = float(np.abs(system.gap[:k]).max(initial=0.0)) / L
     return max(force, gap, float(np.abs(system.gap[k:]).max(initial=0.0)))
+
+
+def settled(size: float, before: float) -> bool:
+    """Whether an imbalance is none, after the one before it."""
+    return size < TOLERANCE or (size < ROUND_OFF and size > 0.5 * before)
 
 
 def step(chain: Chain, shape: Shape, system: System, dq: Floats, ds: Floats) -> Shape:
@@ -44,25 +53,44 @@ def step(chain: Chain, shape: Shape, system: System, dq: Floats, ds: Floats) -> 
     return moved._replace(reaction=shape.reaction + ds[:k], torque=torque)
 
 
-def newton(chain: Chain, shape: Shape, controls: Controls, most: int = 12) -> tuple[Shape, System] | None:
-    """The equilibrium next to a shape, stable or not, and its derivatives; None when none is near."""
+def newton(
+    chain: Chain, shape: Shape, controls: Controls, most: int = 12, still: Sequence[Floats] = ()
+) -> tuple[Shape, System] | None:
+    """The equilibrium next to a shape, stable or not, and its derivatives; None when none is near.
+
+    still are motions (n_edges, 4) that the way there does without: next to a bifurcation the modes of another
+    branch, onto which an all but singular system would lead.
+    """
     shape = _given(chain, shape, controls)
     before = math.inf
     for _ in range(most):
         system = chain.system(shape, controls)
-        size = imbalance(chain, system)
-        if size < TOLERANCE:
+        size = imbalance(chain, shape, controls, system)
+        if settled(size, before):
             return shape, system
         if not math.isfinite(size) or size > 1e3 * max(before, 1.0):
             return None
         try:
-            dq, ds = Bordered(system.band, system.border, system.corner).solve(-system.residual, -system.gap)
+            dq, ds = _without(system, still).solve(
+                -system.residual, np.append(-system.gap, np.zeros(len(still)))
+            )
         except np.linalg.LinAlgError:
             return None
         if not np.isfinite(dq).all() or _length(chain, dq) > LARGEST_RADIUS:
             return None
         shape, before = step(chain, shape, system, dq, ds), size
     return None
+
+
+def _without(system: System, still: Sequence[Floats]) -> Bordered:
+    """The Newton system in which some motions are kept from taking part."""
+    if len(still) == 0:
+        return Bordered(system.band, system.border, system.corner)
+    border = np.column_stack([system.border, *(system.lower(mode) for mode in still)])
+    corner = np.zeros((border.shape[1], border.shape[1]))
+    k = len(system.gap)
+    corner[:k, :k] = system.corner
+    return Bordered(system.band, border, corner)
 
 
 def minimise(chain: Chain, shape: Shape, controls: Controls, most: int = 200) -> Shape:
@@ -74,12 +102,14 @@ def minimise(chain: Chain, shape: Shape, controls: Controls, most: int = 200) ->
         When no equilibrium is found within so many steps.
     """
     shape = _given(chain, shape, controls)
-    radius, shift = 0.3 * LARGEST_RADIUS, 0.0
+    radius, shift, before = 0.3 * LARGEST_RADIUS, 0.0, math.inf
     for _ in range(most):
         system = chain.system(shape, controls)
         solver, shift = _convex(chain, system, shift)
-        if shift == 0.0 and imbalance(chain, system) < TOLERANCE:
+        size = imbalance(chain, shape, controls, system)
+        if shift == 0.0 and settled(size, before):
             return shape
+        before = size
         solver, shift, dq, ds = _within(chain, system, solver, shift, radius)
         weight = 2.0 * float(np.abs(shape.reaction + ds[: len(chain.weight)]).max(initial=0.0))
         weight += chain.B / chain.twisted_length**2

@@ -7,6 +7,7 @@ written into every result. Nothing heavy is imported until it runs, so that help
 from __future__ import annotations
 
 import dataclasses
+import json
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -49,6 +50,9 @@ class Spec(BaseModel, ABC):
         "thickness": "there is no field 'thickness'; give 'radius', half of it",
     }
     """What to say to those who give a field that this protocol does not have."""
+
+    pictured: ClassVar[bool] = True
+    """Whether there is a picture to draw of a result."""
 
     protocol: str
     material: str = Field(
@@ -105,6 +109,19 @@ class Spec(BaseModel, ABC):
         return self.model_dump(mode="json", exclude_none=True)
 
     @abstractmethod
+    def meaning(self) -> dict[str, Any]:
+        """The numbers behind names in the specification, which another version may understand otherwise."""
+
+    def attributes(self) -> dict[str, Any]:
+        """What every result of this specification says of itself."""
+        return {
+            "protocol": self.protocol,
+            "spec": json.dumps(self.stored()),
+            "radius": self.h,
+            "model": json.dumps(self.meaning()),
+        }
+
+    @abstractmethod
     def run(
         self,
         progress: Progress | None = None,
@@ -141,6 +158,9 @@ class Trial(NamedTuple):
     catch : called with a time [s] when nothing resists the load: bring the fibers to where something does,
         at that time at the latest, and say how, or None where there is no such place
     about : attributes of the result, in words
+    over : asked whenever something is recorded after t = 0: whether there is nothing left to see
+    later : times [s] at which ends and loads change
+    begin : called with the present time [s] before the fibers move on: put these ends and loads in place
     """
 
     motion: Motion
@@ -156,6 +176,9 @@ class Trial(NamedTuple):
     sample: Callable[[], dict[str, float]] = dict
     catch: Callable[[float], Outcome | None] = lambda until: None
     about: Mapping[str, str] = MappingProxyType({})
+    over: Callable[[], bool] = lambda: False
+    later: tuple[float, ...] = ()
+    begin: Callable[[float], None] = lambda time: None
 
 
 class Driven(Spec):
@@ -208,10 +231,6 @@ class Driven(Spec):
     @abstractmethod
     def lasting(self) -> float:
         """How long it goes on [s]."""
-
-    @abstractmethod
-    def meaning(self) -> dict[str, Any]:
-        """The numbers behind the names in the specification, which another version may understand otherwise."""
 
     @abstractmethod
     def trial(self) -> Trial:

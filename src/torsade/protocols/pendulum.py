@@ -38,6 +38,8 @@ class Pendulum(Rod):
         "inertia": "there is no field 'inertia'; give 'mass' and 'mass_radius' of the cylinder",
     }
 
+    pictured: ClassVar[bool] = False
+
     protocol: Literal["pendulum"] = "pendulum"
     mass: Annotated[Mass, Positive] = Field(0.02, description="Mass of the cylinder.", examples=["20 g"])
     mass_radius: Annotated[Length, Positive] = Field(
@@ -50,6 +52,12 @@ class Pendulum(Rod):
         math.pi / 4, description="Angle that the cylinder is turned at first.", examples=["45 deg"]
     )
     edges: int = Field(20, ge=4, le=2000, description="Number of edges that the rod is made of.")
+    frames: int = Field(
+        400,
+        ge=1,
+        le=1_000_000,
+        description="Frames to record after the one at t = 0, evenly spaced: N of them end N intervals.",
+    )
     duration: Annotated[Time, Positive] | None = Field(
         None, description="How long to follow it; by default 10 periods.", examples=["2 s"]
     )
@@ -115,31 +123,28 @@ class Pendulum(Rod):
         import numpy as np
 
         from torsade.motion.grips import gripped
-        from torsade.motion.inertial import Inertial
+        from torsade.motion.inertial import SAFETY, Inertial, longest_step
 
+        material, section = self.fiber_material, self.section
         down = np.array([0.0, 0.0, -1.0])
         x = np.outer(np.linspace(0.0, self.length, self.edges + 1), down)
         assembly, state, boundary = gripped(x, (down, down), self.turn)
-        turned = boundary.turned.copy()
-        turned[-1] = False
+        boundary.turned[-1] = False
         attached = np.zeros(len(assembly.edges))
         attached[-1] = self.moment
+        damped = material.rho * section.J * assembly.rest_length
+        damped[-1] += material.rho * section.J * self.mass_height
+        step = self.step or SAFETY * longest_step(assembly, material, section, boundary)
         return Inertial(
-            assembly,
-            self.fiber_material,
-            self.section,
-            boundary._replace(turned=turned),
-            state,
-            self.step,
-            attached_moment=attached,
-            damped_length=self.mass_height,
+            assembly, material, section, boundary, state, step, attached_moment=attached, damped_moment=damped
         )
 
     def _concluded(self, samples: Mapping[str, Floats]) -> dict[str, float]:
         """Frequency and decay by least squares, and what they say of the rod."""
-        from torsade.fracture.swings import damped_swing
+        from torsade.fracture.pendulum import fit_swing
 
-        omega, decay = damped_swing(samples["time"], samples["angle"])
+        swing = fit_swing(samples["time"], samples["angle"])
+        omega, decay = swing.omega, swing.decay
         material, section = self.fiber_material, self.section
         spring = self.moment * (omega**2 + decay**2)
         drag = 2 * self.moment * decay

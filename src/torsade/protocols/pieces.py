@@ -25,7 +25,7 @@ NAMES = (
     "dissipation",
     "piece_start",
     "position",
-    "kappa",
+    "curvature",
     "twist_density",
     "stress",
 )
@@ -35,11 +35,11 @@ NAMES = (
 class PieceFrames:
     """Frames of a cascade.
 
-    A node that breaks becomes two, so there are as many rows for nodes as the most breaks can make, filled from
-    the first on in the order along the rod; the others hold NaN. Piece p has the rows piece_start[p] to
+    A node that breaks becomes two, so there are as many rows for nodes as the most breaks can make, filled
+    from the first on in the order along the rod; the others hold NaN. Piece p has the rows piece_start[p] to
     piece_start[p + 1] - 1; pieces that are not there are empty. Curvature, twist density and stress are those
-    of the hinge at a node, 0 where there is none. Nodes beyond the ends that belong to grips, as many at either
-    end as `grips`, are left out.
+    of the hinge at a node, 0 where there is none. Nodes beyond the ends that belong to grips, as many at
+    either end as `grips`, are left out.
     """
 
     def __init__(self, cascade: Cascade, most_breaks: int, grips: int = 0) -> None:
@@ -75,7 +75,7 @@ class PieceFrames:
             "dissipation": motion.dissipation,
             "piece_start": start,
             "position": self._padded(x),
-            "kappa": self._at_nodes(kappa),
+            "curvature": self._at_nodes(kappa),
             "twist_density": self._at_nodes(twist_density),
             "stress": self._at_nodes(stress),
         }

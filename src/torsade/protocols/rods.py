@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, field_validator, model_validator
 
 from torsade.errors import QuantityError, TorsadeError
+from torsade.material import Material
 from torsade.protocols.base import Driven, Positive
 from torsade.units import Density, Length, Number, Pressure, Rate, Time
 
@@ -61,12 +62,20 @@ class Rod(Driven):
             raise QuantityError(f"is {value}; give a whole number")
         return value
 
+    @property
+    def fiber_material(self) -> Material:
+        """The named material with constants given in place of its own; E is E_b too if that is not given."""
+        material = super().fiber_material
+        return (
+            material if self.E is None or self.E_b is not None else dataclasses.replace(material, E_b=self.E)
+        )
+
     def check_slender(self) -> None:
         """Refuse a rod that is thicker than rod theory allows."""
         if self.length < 20 * self.h:
             raise TorsadeError(
-                f"a rod of length {1e3 * self.length:.4g} mm and radius {1e3 * self.h:.4g} mm is too thick to be "
-                "a rod; give a length of at least 20 radii"
+                f"a rod of length {1e3 * self.length:.4g} mm and radius {1e3 * self.h:.4g} mm is too thick to "
+                "be a rod; give a length of at least 20 radii"
             )
 
     def check_step(self, steps_of: float) -> None:
@@ -96,8 +105,8 @@ class Breakable(Rod):
 
     sigma_c: Annotated[Pressure, Positive] = Field(
         1.9e7,
-        description="Stress sigma_c at which the rod breaks by the criterion effective; other criteria get the "
-        "strength that gives the same limit curvature without twist.",
+        description="Stress sigma_c at which the rod breaks by the criterion effective; other criteria get "
+        "the strength that gives the same limit curvature without twist.",
         examples=["19 MPa"],
     )
     criterion: Literal[
@@ -134,10 +143,17 @@ class Breakable(Rod):
         return self
 
     @property
+    def least_fragment(self) -> float:
+        """The length that pieces exceed [m]."""
+        return self.min_fragment
+
+    @property
     def wave_time(self) -> float:
-        """When the greatest bending of the wave from a break in the middle reaches the ends (thesis 3.21) [s]."""
-        material = self.fiber_material
-        return self.length**2 / (8 * math.pi * self.h * math.sqrt(material.E_b / material.rho))
+        """When the peak of the bending wave from a break in the middle reaches the ends (thesis 3.21) [s]."""
+        from torsade.fracture.rod import Rod as BrokenRod
+        from torsade.fracture.theory.scales import bending_time
+
+        return bending_time(BrokenRod.of(self.fiber_material, self.h, self.length), self.length / 2)
 
     def strengths(self, rest_length: Floats) -> Floats:
         """Strength of every hinge by the criterion chosen [Pa], shape (n_hinges,)."""
@@ -169,7 +185,7 @@ class Breakable(Rod):
         motion = Inertial(assembly, material, section, boundary, state, self.step)
         self.check_step(motion.rod.dt)
         frozen = self.pieces == "frozen"
-        fracture = Fracture(self.strengths(assembly.rest_length), self.criterion, self.min_fragment, frozen)
+        fracture = Fracture(self.strengths(assembly.rest_length), self.criterion, self.least_fragment, frozen)
         return Cascade(motion, fracture, material, section, followed)
 
     def conclusion(self, cascade: Cascade, at_limit: Mapping[str, float]) -> dict[str, Any]:

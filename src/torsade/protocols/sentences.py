@@ -41,7 +41,7 @@ def sentence(spec: type[Spec], error: ValidationError) -> str:
         return _unknown_field(spec, name)
     if kind == "missing":
         wanted = (spec.model_fields[name].description or "").rstrip(".")
-        return f"{name} is missing; give a {wanted}"
+        return f"{name} is missing; give a {wanted[:1].lower()}{wanted[1:]}"
     if kind == "literal_error":
         choices = context["expected"].replace("'", "").replace(" or ", ", ").split(", ")
         near = difflib.get_close_matches(str(first["input"]), choices, n=1)

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 __all__ = ["SnapQuench"]
 
+MEASURED_AT, SHORTEST = 0.003, 0.01
+"""Speed [m/s] at which the thesis measured its least fragment length, and the shortest at any speed [m] (3.3)."""
+
 LEAST_SHORTENING = 1e-3
 """Share of the length by which the ends are nearer at the start: a straight rod would not know where to go."""
 
@@ -44,9 +47,14 @@ class SnapQuench(Breakable):
         0.003, description="Speed at which the ends near each other.", examples=["100 mm/s"]
     )
     approach: Annotated[Time, Positive] = Field(
-        0.05,
+        0.02,
         description="How long before the expected break the motion is followed, or from the straight rod on.",
-        examples=["50 ms"],
+        examples=["20 ms"],
+    )
+    fragment_law: Literal["constant", "quarter-power"] = Field(
+        "constant",
+        description="Whether the least length of pieces is min_fragment at every speed, or, as measured in the "
+        "thesis, min_fragment at 3 mm/s, falling as speed^(-1/4) to no less than 10 mm.",
     )
     after: Annotated[Time, Positive] | None = Field(
         None,
@@ -65,6 +73,14 @@ class SnapQuench(Breakable):
         return self
 
     @property
+    def least_fragment(self) -> float:
+        """The length that pieces exceed at this speed [m]."""
+        if self.fragment_law == "constant":
+            return self.min_fragment
+        scale = float((MEASURED_AT / self.speed) ** 0.25)
+        return max(self.min_fragment * scale, min(SHORTEST, self.min_fragment))
+
+    @property
     def following(self) -> float:
         """How long the pieces are followed [s]."""
         return self.wave_time if self.after is None else self.after
@@ -77,9 +93,11 @@ class SnapQuench(Breakable):
     def trial(self) -> Trial:
         from torsade.fracture.cascade import most_breaks
         from torsade.protocols.pieces import NAMES, PieceFrames
+        from torsade.protocols.shapes import check_frames
 
+        check_frames(self.frames + 1, self.edges + 1)
         cascade = self.driven()
-        most = most_breaks(cascade.motion.assembly, self.min_fragment)
+        most = most_breaks(cascade.motion.assembly, self.least_fragment)
         frames = PieceFrames(cascade, max(most, 1) + 1)
         return Trial(
             cascade,
@@ -126,4 +144,5 @@ class SnapQuench(Breakable):
 
 def _centred(x: Floats) -> Floats:
     """Nodes (n, 3) [m] about the middle between their ends."""
-    return x - 0.5 * (x[0] + x[-1])
+    middle: Floats = 0.5 * (x[0] + x[-1])
+    return x - middle

@@ -42,9 +42,11 @@ class SnapTwist(Breakable):
     def trial(self) -> Trial:
         from torsade.fracture.cascade import most_breaks
         from torsade.protocols.pieces import NAMES, PieceFrames
+        from torsade.protocols.shapes import check_frames
 
+        check_frames(self.frames + 1, self.edges + 1)
         cascade, at_limit = self.broken()
-        most = most_breaks(cascade.motion.assembly, self.min_fragment)
+        most = most_breaks(cascade.motion.assembly, self.least_fragment)
         frames = PieceFrames(cascade, max(most, 1), grips=1)
         return Trial(
             cascade,
