@@ -86,7 +86,7 @@ def _twist_rows(result: Result) -> list[tuple[Cell, ...]]:
 
 def _bend_rows(result: Result) -> list[tuple[Cell, ...]]:
     rod, kappa_c = breaking.RODS[1], float(result.dataset.attrs["critical_curvature_per_m"])
-    x, start = breaking.half(result, 0, "kappa")
+    x, start = breaking.half(result, 0, "curvature")
     # The hinge that broke is no more: its curvature is that of its neighbours.
     start[-1] = start[-2]
     fine = np.linspace(0.0, x[-1], 801)
@@ -94,7 +94,7 @@ def _bend_rows(result: Result) -> list[tuple[Cell, ...]]:
     rows: list[tuple[Cell, ...]] = []
     for time, theory in zip(BEND_TIMES, euler, strict=True):
         frame = _frame(result, time)
-        _, kappa = breaking.half(result, frame, "kappa")
+        _, kappa = breaking.half(result, frame, "curvature")
         at: Floats = np.interp(x, fine, theory)
         t = float(result.dataset["time"].values[frame])
         rows += [

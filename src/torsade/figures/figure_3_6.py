@@ -52,7 +52,7 @@ def runs(choice: Choice) -> Mapping[str, Spec]:
             sigma_c=float(stress(kappa, math.radians(degree) / ROD.L, ROD.E, ROD.mu, ROD.h)),
             min_fragment=ROD.L / 2,
             edges=edges,
-            frames=50 if choice.quick else 686,
+            frames=300 if choice.quick else 686,
         )
         for edges in EDGES[: 1 if choice.quick else 2]
         for kappa in curvatures
@@ -80,7 +80,7 @@ def _rise(result: Result) -> tuple[float, float]:
     """C anywhere, and beyond `FAR` from the new end."""
     before = float(result.dataset.attrs["critical_curvature_per_m"])
     early = np.asarray(result.dataset["time"].values) <= UNTIL
-    kappa = np.asarray(result.dataset["kappa"].values, np.float64)[early]
+    kappa = np.asarray(result.dataset["curvature"].values, np.float64)[early]
     end = int(result.dataset["piece_start"].values[0][1])
     s = np.arange(end) * ROD.L / int(result.spec["edges"])
     away = s[-1] - s >= FAR * (1 - 1e-9)
