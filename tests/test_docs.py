@@ -85,7 +85,7 @@ def test_a_figure_shown_is_made(line: str, tmp_path: Path) -> None:
 
 LABORATORY = {
     "trials.csv": "lengths_mm,twist_deg,speed_mm_per_s\n90 30 120,0,3\n120 120,300,3\n",
-    "masses.csv": "mass_g,length_mm\n300,150\n130,220\n",
+    "masses.csv": "mass_g,length_mm\n32,150\n15,220\n",
     "weights.csv": "mass_g,length_mm\n0.55,240\n0.56,240\n",
 }
 """What the files of the commands shown may hold."""

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = [
     "CURVES",
     "DISORDER",
+    "PLATE",
     "RODS",
     "SIGMA_C",
     "critical_curves",
@@ -54,6 +55,9 @@ CURVES = (
 """Criteria as they are drawn: name, label, colour, dashes."""
 
 REGION = "#c9b6e0"
+PLATE: Mapping[str, Any] = {"framealpha": 0.85, "edgecolor": "none", "borderpad": 0.3}
+"""Behind legends that stand on something."""
+
 _COUNTS = ("#5b3a8e", "#2f6fa8", "#3f9e8f", "#8fbf4d", "#e0b63a", "#d97a34", "#b5475c")
 
 

@@ -93,7 +93,7 @@ def draw_trials(axes: Any, table: Table, which: int) -> None:
             color=breaking.pieces_colour(pieces), markeredgecolor="white", markeredgewidth=0.4,
             label=f"{pieces} pieces",
         )  # fmt: skip
-    axes.legend(frameon=False, fontsize=6.5, loc="lower left", handletextpad=0.4)
+    axes.legend(fontsize=6.5, loc="lower left", handletextpad=0.4, **breaking.PLATE)
 
 
 def draw_sectors(axes: Any, table: Table, which: int) -> None:
@@ -111,7 +111,7 @@ def draw_sectors(axes: Any, table: Table, which: int) -> None:
     bar = axes.figure.colorbar(points, ax=axes, ticks=[2, 3, 4, 5, 6], aspect=22, pad=0.02)
     bar.set_label("mean number of pieces")
     bar.outline.set_visible(False)
-    axes.legend(frameon=False, fontsize=6, loc="lower left", handlelength=2.4)
+    axes.legend(fontsize=6, loc="lower left", handlelength=2.4, **breaking.PLATE)
 
 
 FIGURE = Figure("3-4", "With enough twist rods break in two", runs, measure, draw)
