@@ -108,9 +108,9 @@ def build(arguments: list[str]) -> App:
     app.command(_figure, name="figure", help_epilogue=FIGURE_EXAMPLES, version_flags=[])
     run = App(
         name="run",
-        help="Run an experiment: prison-escape (pull a bend), tighten (pull a knot in one strand), reidemeister "
-        "(make a Reidemeister move), bend-twist (bend a twisted fiber), snap-twist (break a twisted rod), "
-        "snap-quench (break a rod at speed) or pendulum (a mass that turns on a rod).",
+        help="Run an experiment: prison-escape (pull a bend), tighten (pull a knot in one strand), "
+        "reidemeister (make a Reidemeister move), bend-twist (bend a twisted fiber), snap-twist (break a "
+        "twisted rod), snap-quench (break a rod at speed) or pendulum (a mass that turns on a rod).",
         help_epilogue="See the options with: torsade run prison-escape --help",
         version_flags=[],
     )
