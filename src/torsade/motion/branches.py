@@ -193,8 +193,8 @@ def switch(chain: Chain, path: Path, at: Point, mode: Floats, amplitude: float) 
 
     amplitude is the root mean square of the angle that edges turn by [rad]; its sign chooses the side.
     """
-    unit = Tangent(mode * math.sqrt(chain.twisted_length), np.zeros(chain.held), 0.0)
-    found = _correct(chain, path, at, unit, amplitude)
+    outwards = math.copysign(math.sqrt(chain.twisted_length), amplitude) * mode
+    found = _correct(chain, path, at, Tangent(outwards, np.zeros(chain.held), 0.0), abs(amplitude))
     return None if found is None else found[0]
 
 

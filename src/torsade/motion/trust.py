@@ -22,8 +22,11 @@ from torsade.motion.chain import Chain, Controls, Shape, System
 __all__ = ["imbalance", "minimise", "newton", "settled", "step"]
 
 TOLERANCE, ROUND_OFF = 1e-10, 1e-7
-"""Out-of-balance force, in units of those that act, and gap, in units of L, at which a shape is at equilibrium:
-below the first, or below the second when it falls no further."""
+"""Out-of-balance force, in units of those that act, at which a shape is at equilibrium: below the first, or below
+the second when it falls no further."""
+
+GAPS = 1e3
+"""How much more exact gaps are, in units of L: a nearly straight fiber is shorter by the square of its slope."""
 
 LARGEST_RADIUS = 1.0
 """Longest step, as the root mean square of the angle that edges turn by [rad]."""
@@ -37,12 +40,12 @@ def imbalance(chain: Chain, shape: Shape, controls: Controls, system: System) ->
     unit = acting + abs(shape.torque) / L + chain.B / L**2
     force = float(np.linalg.norm(system.residual)) / math.sqrt(L) / unit
     gap = float(np.abs(system.gap[:k]).max(initial=0.0)) / L
-    return max(force, gap, float(np.abs(system.gap[k:]).max(initial=0.0)))
+    return max(force, GAPS * gap, GAPS * float(np.abs(system.gap[k:]).max(initial=0.0)))
 
 
 def settled(size: float, before: float) -> bool:
     """Whether an imbalance is none, after the one before it."""
-    return size < TOLERANCE or (size < ROUND_OFF and size > 0.5 * before)
+    return size < TOLERANCE or (0.5 * before < size < ROUND_OFF and before < ROUND_OFF)
 
 
 def step(chain: Chain, shape: Shape, system: System, dq: Floats, ds: Floats) -> Shape:
@@ -109,7 +112,7 @@ def minimise(chain: Chain, shape: Shape, controls: Controls, most: int = 200) ->
         size = imbalance(chain, shape, controls, system)
         if shift == 0.0 and settled(size, before):
             return shape
-        before = size
+        before = size if shift == 0.0 else math.inf
         solver, shift, dq, ds = _within(chain, system, solver, shift, radius)
         weight = 2.0 * float(np.abs(shape.reaction + ds[: len(chain.weight)]).max(initial=0.0))
         weight += chain.B / chain.twisted_length**2
