@@ -32,7 +32,7 @@ LENGTH = 60.0
 
 
 def buckled(edges: int) -> tuple[Chain, Path, Point]:
-    """A clamped fiber whose one end slides along x, its path from where it buckles to m = 0.4, and a point on it.
+    """A clamped fiber whose one end slides along x, its path from where it buckles to m = 0.4, a point on it.
 
     The middle is held in z: nothing else would keep the fiber from turning about its axis.
     """
@@ -65,7 +65,6 @@ def followed(edges: int) -> np.ndarray:
     return np.array(rows)
 
 
-@pytest.mark.slow
 def test_localised_buckling() -> None:
     """The branch from the straight fiber, by its critical mode, down to m = 0.4: all numbers to 0.6 %."""
     rows = followed(1000)[::-1]

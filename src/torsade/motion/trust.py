@@ -57,7 +57,7 @@ def step(chain: Chain, shape: Shape, system: System, dq: Floats, ds: Floats) -> 
 
 
 def newton(
-    chain: Chain, shape: Shape, controls: Controls, most: int = 12, still: Sequence[Floats] = ()
+    chain: Chain, shape: Shape, controls: Controls, most: int = 12, still: Sequence[Floats] | Floats = ()
 ) -> tuple[Shape, System] | None:
     """The equilibrium next to a shape, stable or not, and its derivatives; None when none is near.
 
@@ -85,7 +85,7 @@ def newton(
     return None
 
 
-def _without(system: System, still: Sequence[Floats]) -> Bordered:
+def _without(system: System, still: Sequence[Floats] | Floats) -> Bordered:
     """The Newton system in which some motions are kept from taking part."""
     if len(still) == 0:
         return Bordered(system.band, system.border, system.corner)
