@@ -46,7 +46,9 @@ SCRIPTS = (
     "tight",
     "building",
     "variants",
+    "chapter4",
     "tails",
+    "tightening",
 )
 
 

@@ -50,7 +50,14 @@ def test_the_python_example_runs(
 
 def test_commands_are_found() -> None:
     """The tests below have something to test."""
-    assert {line.split()[1] for line in commands()} == {"run", "topology", "convert", "tight", "knots"}
+    assert {line.split()[1] for line in commands()} == {
+        "run",
+        "topology",
+        "convert",
+        "tight",
+        "knots",
+        "figure",
+    }
     assert len(commands()) >= 5
 
 
@@ -60,6 +67,18 @@ def test_a_topology_shown_is_read(line: str) -> None:
         [sys.executable, "-m", *shlex.split(line)], capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("line", [line for line in commands() if line.split()[1] == "figure"])
+def test_a_figure_shown_is_made(line: str, tmp_path: Path) -> None:
+    """Quickly, where it is asked to be whole."""
+    quick = [*shlex.split(line), "--quick"]
+    done = subprocess.run(
+        [sys.executable, "-m", *quick], capture_output=True, text=True, check=False, cwd=tmp_path
+    )
+    assert done.returncode == 0, done.stderr
+    folder = quick[quick.index("--out") + 1] if "--out" in quick else "figures"
+    assert (tmp_path / folder / f"figure-{quick[2]}.png").stat().st_size > 10_000
 
 
 @pytest.mark.parametrize("line", [line for line in commands() if line.split()[1] == "convert"])

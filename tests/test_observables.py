@@ -62,6 +62,39 @@ def test_twist_is_summed_by_fiber_and_strains() -> None:
     np.testing.assert_allclose(strain, np.log1p(inner / math.sqrt(2)), rtol=1e-12, atol=1e-15)
 
 
+def test_parts_of_the_strain_of_a_twisted_stretched_helix() -> None:
+    """Radius r, pitch 2 pi p: kappa = r/(r² + p²); stretch λ multiplies lengths and divides the curvature."""
+    r, p, stretch, turn = 10 * H, 4 * H, 1.05, 0.03
+    a = np.linspace(0, 6 * math.pi, 2001)
+    helix = np.stack([r * np.cos(a), r * np.sin(a), p * a], axis=1)
+    assembly, state = fibers(helix)
+    pulled = state._replace(x=stretch * state.x, theta=-turn * np.arange(len(a) - 1))
+    found = observables.surface_strain(assembly, pulled, H)
+    l = assembly.rest_length[0]
+    inner = slice(1, -1)
+    np.testing.assert_allclose(found.stretch, stretch - 1, rtol=1e-9)
+    np.testing.assert_allclose(found.bend[inner], H * r / (r**2 + p**2) / stretch, rtol=1e-4)
+    np.testing.assert_allclose(found.twist[inner], H * turn / l / math.sqrt(2), rtol=1e-9)
+    expected = np.sqrt((H * turn / l) ** 2 / 2 + (H * r / (r**2 + p**2) / stretch + stretch - 1) ** 2)
+    np.testing.assert_allclose(found.total[inner], expected, rtol=1e-3)
+    np.testing.assert_allclose(observables.log_strain(assembly, pulled, H), np.log1p(found.total))
+
+
+def test_ends_of_an_open_fiber_are_only_stretched() -> None:
+    assembly, state = fibers(ring(60, 10 * H)[:30])
+    found = observables.surface_strain(assembly, state._replace(theta=0.1 * np.arange(29)), H)
+    for part in (found.bend, found.twist):
+        assert (part[[0, -1]] == 0).all()
+        assert (part[1:-1] > 0).all()
+
+
+def test_the_fastest_node() -> None:
+    _, state = fibers(line(4))
+    v = np.zeros((4, 3))
+    v[2] = (3e-3, 0.0, 4e-3)
+    assert observables.fastest(state._replace(v=v)) == pytest.approx(5e-3)
+
+
 def test_a_fiber_of_one_edge_has_no_twist() -> None:
     assembly, state = fibers(line(2), line(4, 1e-3))
     assert observables.twist(assembly, state).tolist() == [0.0, 0.0]

@@ -18,7 +18,9 @@ from torsade.assembly import Assembly, State
 __all__ = [
     "SETTLED",
     "Friction",
+    "SurfaceStrain",
     "edge_lengths",
+    "fastest",
     "fiber_lengths",
     "friction",
     "h_kappa",
@@ -26,6 +28,7 @@ __all__ = [
     "hinge_twist",
     "log_strain",
     "pull_speed",
+    "surface_strain",
     "twist",
 ]
 
@@ -79,24 +82,55 @@ def twist(assembly: Assembly, state: State) -> Floats:
     return _sum_by_fiber(hinge_twist(assembly, state), assembly.hinge_start)
 
 
-def log_strain(assembly: Assembly, state: State, radius: float) -> Floats:
-    """Strain log(1 + √(eps:eps)) on the surface at every node, shape (n_nodes,) (thesis 4.3).
+class SurfaceStrain(NamedTuple):
+    """The parts of the strain on the surface at every node, each of shape (n_nodes,), without unit.
 
-    √(h² theta'²/2 + (h kappa + |x'| - 1)²), with theta' the hinge twist per rest length and |x'| the
-    stretch, averaged over the edges that meet at the node. At the ends of an open fiber kappa and
-    theta' are zero.
+    Attributes
+    ----------
+    stretch : |x'| - 1, averaged over the edges that meet at the node
+    bend : h kappa, kappa per present length
+    twist : h |theta'|/√2, theta' the hinge twist per rest length
+
+    At the ends of an open fiber kappa and theta' are zero.
     """
+
+    stretch: Floats
+    bend: Floats
+    twist: Floats
+
+    @property
+    def total(self) -> Floats:
+        """√(eps:eps) where it is largest on the surface, √(twist² + (bend + stretch)²) (thesis 4.3)."""
+        return np.hypot(self.twist, self.bend + self.stretch)
+
+    @property
+    def log(self) -> Floats:
+        """True strain log(1 + √(eps:eps)), the measure that colours show (thesis 4.3)."""
+        return np.log1p(self.total)
+
+
+def surface_strain(assembly: Assembly, state: State, radius: float) -> SurfaceStrain:
+    """Stretch, bend and twist on the surface at every node; radius is h [m]."""
     node = assembly.hinges[:, 2]
-    h_theta = np.zeros(len(assembly.node_length))
-    h_curvature = np.zeros_like(h_theta)
-    h_theta[node] = radius * hinge_twist(assembly, state) / assembly.hinge_length
-    h_curvature[node] = h_kappa(assembly, state, radius)
-    stretch = edge_lengths(assembly, state) / assembly.rest_length
-    total, meeting = np.zeros_like(h_theta), np.zeros_like(h_theta)
-    np.add.at(total, assembly.edges.ravel(), np.repeat(stretch, 2))
+    bend = np.zeros(len(assembly.node_length))
+    twisted = np.zeros_like(bend)
+    bend[node] = h_kappa(assembly, state, radius)
+    twisted[node] = radius * np.abs(hinge_twist(assembly, state)) / assembly.hinge_length / math.sqrt(2)
+    extension = edge_lengths(assembly, state) / assembly.rest_length - 1
+    total, meeting = np.zeros_like(bend), np.zeros_like(bend)
+    np.add.at(total, assembly.edges.ravel(), np.repeat(extension, 2))
     np.add.at(meeting, assembly.edges.ravel(), 1.0)
-    extension = h_curvature + total / meeting - 1
-    return np.asarray(np.log1p(np.sqrt(h_theta**2 / 2 + extension**2)))
+    return SurfaceStrain(total / meeting, bend, twisted)
+
+
+def log_strain(assembly: Assembly, state: State, radius: float) -> Floats:
+    """Strain log(1 + √(eps:eps)) on the surface at every node, shape (n_nodes,); see `SurfaceStrain`."""
+    return surface_strain(assembly, state, radius).log
+
+
+def fastest(state: State) -> float:
+    """Speed of the fastest node [m/s]."""
+    return float(np.linalg.norm(state.v, axis=1).max())
 
 
 def pull_speed(time: ArrayLike, separation: ArrayLike) -> Floats:

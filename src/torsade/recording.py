@@ -20,7 +20,7 @@ from torsade.arrays import Floats
 from torsade.errors import TorsadeError, counted, quoted
 from torsade.results import Result
 
-__all__ = ["SAMPLE", "VARIABLES", "Recording"]
+__all__ = ["BYTES_PER_NODE", "SAMPLE", "VARIABLES", "Recording"]
 
 FLUSH_EVERY = 0.5
 """Least time between writes to disk [s]: frames that come faster are written together."""
@@ -39,6 +39,8 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "max_log_strain": (("time",), "", "largest log(1 + sqrt(eps:eps))"),
     "twist": (("time", "fiber"), "rad", "twist of each fiber"),
     "curvature": (("time", "node"), "1/m", "curvature of the centerline"),
+    "displacement": (("time",), "m", "how far moved ends have gone"),
+    "crossings": (("time",), "", "crossings seen along z"),
     "energy_stretch": (("time",), "J", "stretch energy"),
     "energy_bend": (("time",), "J", "bending energy"),
     "energy_twist": (("time",), "J", "twist energy"),
@@ -47,10 +49,31 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "dissipation": (("time",), "J", "energy lost to drag since the start"),
     "position": (("time", "node", "space"), "m", "node positions"),
     "log_strain": (("time", "node"), "", "log(1 + sqrt(eps:eps)) on the surface"),
+    "strain_stretch": (("time", "node"), "", "stretch |x'| - 1"),
+    "strain_bend": (("time", "node"), "", "strain of bending on the surface, h kappa"),
+    "strain_twist": (("time", "node"), "", "strain of twist on the surface, h |theta'|/sqrt(2)"),
+    "end_distance": (("time",), "m", "distance of the two ends of the rod"),
+    "kappa_max": (("time",), "1/m", "largest curvature"),
+    "energy_kinetic": (("time",), "J", "kinetic energy of the centerline"),
+    "energy_spin": (("time",), "J", "kinetic energy of spin"),
+    "energy_released": (("time",), "J", "energy lost in breaks since the start"),
+    "piece_start": (
+        ("time", "piece_bound"),
+        "",
+        "first node of every piece; empty where pieces are not there",
+    ),
+    "twist_density": (("time", "node"), "rad/m", "twist density, 0 at ends"),
+    "stress": (("time", "node"), "Pa", "stress by the criterion chosen, 0 at ends"),
+    "angle": (("time",), "rad", "angle that the lower end has turned"),
+    "sample_angle": (("sample",), "rad", "angle at the times of samples"),
 }
 """Dimensions, SI unit and meaning of every recorded variable."""
 
-SINGLE_PRECISION = ("position", "log_strain")
+STRAINED = ("position", "log_strain", "strain_stretch", "strain_bend", "strain_twist")
+SINGLE_PRECISION = (*STRAINED, "curvature", "twist_density", "stress")
+
+BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in STRAINED)
+"""What a frame takes for every node: the same, or nearly, in all protocols."""
 
 SAMPLE = "sample_"
 """Beginning of the names of samples."""
@@ -279,8 +302,8 @@ class Recording:
         finally:
             self._discard()
 
-    def finish(self, numbers: Mapping[str, float]) -> Result:
-        """The result of a run that came to its end, with the numbers that belong to it as a whole."""
+    def finish(self, numbers: Mapping[str, Any]) -> Result:
+        """The result of a run that came to its end, with what belongs to it as a whole."""
         self.flush()
         self.attrs.update({"status": "complete"} | dict(numbers))
         self.attrs.update(self._progress())

@@ -33,6 +33,7 @@ __all__ = [
     "Dimension",
     "Force",
     "Length",
+    "Mass",
     "Number",
     "Pressure",
     "Rate",
@@ -98,6 +99,7 @@ DIMENSIONS: Mapping[str, Dimension] = MappingProxyType(
             Dimension("force", "N", (1, 1, -2, 0), "15 N"),
             Dimension("torque", "N m", (2, 1, -2, 0), "3 mN mm"),
             Dimension("energy", "J", (2, 1, -2, 0), "3 mJ"),
+            Dimension("moment of inertia", "kg m^2", (2, 1, 0, 0), "2 kg mm^2"),
             Dimension("pressure", "Pa", (-1, 1, -2, 0), "1 GPa"),
             Dimension("viscosity", "Pa s", (-1, 1, -1, 0), "1e5 Pa s"),
         )
@@ -303,6 +305,7 @@ Rate = Annotated[float, _reads("rate"), DIMENSIONS["rate"]]
 Angle = Annotated[float, _reads("angle"), DIMENSIONS["angle"]]
 AngularVelocity = Annotated[float, _reads("angular velocity"), DIMENSIONS["angular velocity"]]
 Density = Annotated[float, _reads("density"), DIMENSIONS["density"]]
+Mass = Annotated[float, _reads("mass"), DIMENSIONS["mass"]]
 Force = Annotated[float, _reads("force"), DIMENSIONS["force"]]
 Torque = Annotated[float, _reads("torque"), DIMENSIONS["torque"]]
 Pressure = Annotated[float, _reads("pressure"), DIMENSIONS["pressure"]]

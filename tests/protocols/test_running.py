@@ -185,6 +185,64 @@ def test_a_one_strand_knot(bends: Path) -> None:
     np.testing.assert_allclose(report["max_log_strain"], strain, rtol=1e-6)
 
 
+STILL = Tighten(knot="overhand", duration="20 s", frames=100, until_still="10 um/s")
+
+
+def test_a_run_ends_in_the_first_frame_in_which_all_is_still() -> None:
+    result = STILL.run()
+    whole = STILL.model_copy(update={"until_still": None}).run()
+    n = result.frames
+    assert 2 < n < 101
+    assert result.complete
+    np.testing.assert_array_equal(result.dataset["position"], whole.dataset["position"][:n])
+    x = whole.dataset["position"].values.astype(float)
+    later = np.linalg.norm(x[n] - x[n - 1], axis=1).max() / 0.2
+    before = np.linalg.norm(x[n - 2] - x[n - 3], axis=1).max() / 0.2
+    assert later < 10e-6 < before
+    assert Tighten.report(result)["still_at_s"] == pytest.approx(0.2 * (n - 1))
+    assert Tighten.report(whole)["still_at_s"] is None
+
+
+@pytest.mark.parametrize("share", [0.03, 0.06])
+def test_a_run_until_still_resumes_to_the_bit(tmp_path: Path, share: float) -> None:
+    def stop(done: float, note: str) -> None:
+        if done > share:
+            raise KeyboardInterrupt
+
+    whole, out = STILL.run(), tmp_path / "overhand.zarr"
+    with pytest.raises(Interrupted):
+        STILL.run(stop, out)
+    resumed = STILL.run(out=out, resume=True)
+    assert resumed.dataset.equals(whole.dataset)
+    assert ts.open(out).dataset.equals(whole.dataset)
+
+
+def test_a_run_that_was_still_when_it_was_killed_is_only_completed(tmp_path: Path) -> None:
+    """Stopped between its last frame and its end, it takes no further step."""
+    from torsade.recording import Recording
+
+    whole, out = STILL.run(), tmp_path / "overhand.zarr"
+
+    def killed(self: Recording, numbers: object) -> ts.Result:
+        self.flush()
+        raise KeyboardInterrupt
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Recording, "finish", killed)
+        with pytest.raises(Interrupted):
+            STILL.run(out=out)
+    resumed = STILL.run(out=out, resume=True)
+    assert resumed.dataset.equals(whole.dataset)
+    assert resumed.dataset.attrs["over_at_s"] == whole.dataset.attrs["over_at_s"]
+
+
+def test_recorded_parts_make_the_recorded_strain(short: ts.Result) -> None:
+    data = short.dataset.astype(float)
+    extension = data["strain_bend"] + data["strain_stretch"]
+    total = np.hypot(data["strain_twist"], extension)
+    np.testing.assert_allclose(np.log1p(total), data["log_strain"], rtol=1e-5, atol=1e-7)
+
+
 @pytest.mark.parametrize("seed", range(5))
 def test_slack_agrees_with_all_pairs(seed: int) -> None:
     """The distance of the first of all pairs to touch, by brute force."""

@@ -9,7 +9,14 @@ import numpy as np
 import pytest
 
 from torsade.errors import TorsadeError
-from torsade.view.colours import STRAND_COLOURS, strain_colormap, strain_colour, strand_colour
+from torsade.view.colours import (
+    PRIMARIES,
+    STRAND_COLOURS,
+    chromaticity,
+    strain_colormap,
+    strain_colour,
+    strand_colour,
+)
 
 
 @pytest.mark.parametrize(
@@ -41,6 +48,25 @@ def test_the_colormap_is_the_same_map():
     pytest.importorskip("matplotlib")
     strains = np.linspace(0.0, 0.7, 200)
     assert strain_colormap()(strains / 0.7)[:, :3] == pytest.approx(strain_colour(strains), abs=0.006)
+
+
+def test_chromaticities_of_primaries_and_white_are_those_of_the_standard():
+    """IEC 61966-2-1: primaries as listed, white D65 at (0.3127, 0.3290)."""
+    assert chromaticity(np.eye(3)) == pytest.approx(np.array(PRIMARIES), abs=3e-4)
+    assert chromaticity([[1, 1, 1], [0.2, 0.2, 0.2]]) == pytest.approx(
+        np.array([[0.3127, 0.3290]] * 2), abs=2e-4
+    )
+
+
+def test_chromaticity_of_a_mixture_lies_between_its_parts_on_a_line():
+    """Light adds linearly: 0.735357 of full scale is half the light."""
+    red, green, mixed = (
+        chromaticity(c) for c in ((0.735357, 0, 0), (0, 0.735357, 0), (0.735357, 0.735357, 0))
+    )
+    share = (mixed - red) / (green - red)
+    assert share[0] == pytest.approx(share[1])
+    assert 0 < share[0] < 1
+    assert chromaticity((1, 1, 0)) == pytest.approx(mixed)
 
 
 BLINDNESS = {

@@ -35,7 +35,7 @@ def _figure(monkeypatch):
         kept["figure"] = figure
         return path
 
-    monkeypatch.setattr(plots, "_save", keep)
+    monkeypatch.setattr(plots, "save", keep)
     return lambda: kept["figure"]
 
 
@@ -87,6 +87,19 @@ def test_tightening_has_three_panels_over_one_time_axis(figure):
     assert curve(twist)[1] == pytest.approx(-0.67 * T)
     assert distance.get_xlim() == twist.get_xlim() == (0.0, 1.0)
     assert distance.get_title(loc="left") == "trefoil"
+
+
+def test_a_move_shows_stored_energies_and_crossings_against_the_way(figure):
+    parts = {"bend": 3 - T, "twist": T, "stretch": 0 * T + 0.5, "contact": 0.1 * T}
+    variables = {f"energy_{kind}": ("time", 1e-9 * e) for kind, e in parts.items()}
+    variables |= {"displacement": ("time", 0.02 * T), "crossings": ("time", (T < 0.5).astype(float))}
+    plots.plot_move(xr.Dataset(variables, {"time": T}, {"knot": "R1"}), "x.png")
+    upper, lower = figure().axes
+    shown = {line.get_label(): line.get_xydata().T for line in upper.lines}
+    assert shown["all"] == pytest.approx(np.stack([20 * T, 3.5 + 0.1 * T]))
+    assert shown["twist"][1] == pytest.approx(T)
+    assert curve(lower)[1].tolist() == [1.0] * 50 + [0.0] * 51
+    assert upper.get_title(loc="left") == "R1"
 
 
 @pytest.mark.parametrize(("ending", "start"), [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")])

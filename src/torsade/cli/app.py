@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, Group, Parameter
 
 from torsade import __version__
+from torsade.cli.fracture_app import add_commands
 from torsade.cli.knots_app import knots_app
 from torsade.errors import TorsadeError
 
@@ -35,7 +36,11 @@ OPTIONS: dict[str, tuple[type, str]] = {
 EXAMPLES = {
     "prison-escape": '--knot reef --force "15 N" --out reef.zarr --picture reef.png',
     "bend-twist": '--length "24 cm" --end-distance "19 cm" --twist "270 deg" --plot bent.png',
-    "tighten": '--knot overhand --force "20 mN" --out overhand.zarr --picture overhand.png',
+    "pendulum": '--turn "45 deg" --mass "20 g" --out pendulum.zarr --plot pendulum.png',
+    "snap-quench": '--speed "100 mm/s" --disorder 0.05 --seed 1 --out quench.zarr --plot quench.png',
+    "snap-twist": '--twist "270 deg" --out snap.zarr --plot snap.png',
+    "tighten": '--knot overhand --duration "10 s" --until-still "1 um/s" --out overhand.zarr',
+    "reidemeister": "--move R1 --out loop.zarr --plot loop.png",
 }
 
 TOPOLOGY_EXAMPLES = """Examples:
@@ -99,11 +104,13 @@ def build(arguments: list[str]) -> App:
     app.command(_convert, name="convert", help_epilogue=CONVERT_EXAMPLES, version_flags=[])
     app.command(knots_app())
     app.command(_tight, name="tight", help_epilogue=TIGHT_EXAMPLES, version_flags=[])
+    add_commands(app)
     app.command(_figure, name="figure", help_epilogue=FIGURE_EXAMPLES, version_flags=[])
     run = App(
         name="run",
-        help="Run an experiment: prison-escape (pull a bend), tighten (pull a knot in one strand) or "
-        "bend-twist (bend a twisted fiber).",
+        help="Run an experiment: prison-escape (pull a bend), tighten (pull a knot in one strand), reidemeister "
+        "(make a Reidemeister move), bend-twist (bend a twisted fiber), snap-twist (break a twisted rod), "
+        "snap-quench (break a rod at speed) or pendulum (a mass that turns on a rod).",
         help_epilogue="See the options with: torsade run prison-escape --help",
         version_flags=[],
     )
@@ -348,9 +355,9 @@ def _protocol_command(spec: type[Spec]) -> Callable[..., int]:
 
 
 def _ordered(spec: type[Spec]) -> list[str]:
-    """Fields of the protocol itself first, then those that all have."""
-    own = [name for name in spec.__annotations__ if name in spec.model_fields]
-    return own + [name for name in spec.model_fields if name not in own]
+    """Fields of the protocol itself first, those that all protocols have last."""
+    by_class = [name for cls in spec.__mro__ for name in vars(cls).get("__annotations__", {})]
+    return [name for name in dict.fromkeys(by_class) if name in spec.model_fields]
 
 
 def _option(name: str, kind: type, text: str, group: Group) -> inspect.Parameter:

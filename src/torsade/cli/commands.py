@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 
 __all__ = ["check_drawings", "demo", "progress", "run"]
 
+BREAKING = ("snap-twist", "snap-quench")
+"""Protocols whose results are drawn in pieces."""
+
 INSTALL_VIEW = 'pip install "torsade[view]"'
 
 
@@ -40,6 +43,8 @@ def run(
 ) -> int:
     """Run one specification: the fields of a file, and those given in their place."""
     wanted = _read(protocol, given, spec)
+    if picture is not None and not protocol.pictured:
+        raise TorsadeError(f"{wanted.protocol} has nothing to be pictured; give --plot in place of --picture")
     check_drawings(picture, plot)
     result = _run(wanted, out, resume, overwrite, json)
     _print(result, out, json)
@@ -190,18 +195,26 @@ def _draw(result: Result, out: str | None, picture: str | None, plot: str | None
 
 
 def _picture(result: Result, path: str) -> None:
+    if result.protocol in BREAKING:
+        from torsade.view.cascade import draw_pieces
+
+        draw_pieces(result.dataset, path)
+        return
     from torsade.view.scene import render_result
 
     render_result(result.dataset, path, frame=result.last_held)
 
 
 def _plot(result: Result, path: str) -> None:
-    from torsade.view import plots
+    from torsade.view import cascade, plots
 
     by_protocol = {
         "prison-escape": plots.plot_separation,
         "tighten": plots.plot_tightening,
+        "reidemeister": plots.plot_move,
         "bend-twist": plots.plot_bent,
+        "pendulum": plots.plot_swing,
+        **dict.fromkeys(BREAKING, cascade.plot_cascade),
     }
     by_protocol[result.protocol](result.dataset, path)
 

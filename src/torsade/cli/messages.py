@@ -53,6 +53,37 @@ COMMANDS = MappingProxyType(
             "convert takes two files; give one to read and one to write, such as scan.xyz knot.csv",
             "{} comes after both files; give one to read and one to write",
         ),
+        "trials": _Command(
+            (
+                "--length",
+                "--radius",
+                "--material",
+                "--strength",
+                "--criterion",
+                "--amplification",
+                "--sectors",
+                "--rays",
+                "--slow",
+            ),
+            ("--json",),
+            "nothing is given; give a CSV file of trials, such as trials.csv",
+            _QUOTE,
+        ),
+        "material": _Command(
+            (
+                "--radius",
+                "--radius-error",
+                "--buckling",
+                "--weights",
+                "--pendulum",
+                "--inertia",
+                "--inertia-error",
+                "--mass-height",
+            ),
+            ("--json",),
+            'the radius is not given; give --radius, such as --radius "0.7 mm"',
+            "{} belongs to no option; give every value after its option, and quote values with units",
+        ),
         "knots list": _Command(("--kind",), ("--json",), "", _QUOTE),
         "knots show": _Command((), ("--json",), "nothing is given; give a name such as reef or 5_1", _QUOTE),
         "knots build": _Command(
@@ -65,7 +96,7 @@ COMMANDS = MappingProxyType(
 )
 """By their words in the shell."""
 
-_FIRST = ("convert", "demo", "knots", "run", "tight", "topology")
+_FIRST = ("convert", "demo", "figure", "knots", "material", "run", "tight", "topology", "trials")
 
 
 def _command(arguments: Sequence[str]) -> str | None:

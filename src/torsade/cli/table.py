@@ -23,7 +23,12 @@ WIDTH = 24
 
 def print_table(result: Result, report: dict[str, Any]) -> None:
     """Print what was done and what came of it."""
-    print_rows((*_asked(result), *_found(result, report), *_spent(report)))
+    from torsade.cli.rods_table import ROWS
+
+    if result.protocol in ROWS:
+        print_rows(ROWS[result.protocol](result, report))
+    else:
+        print_rows((*_asked(result), *_found(result, report), *_spent(report)))
 
 
 def print_file(what: str, path: str) -> None:
@@ -63,7 +68,7 @@ def _asked(result: Result) -> Iterator[tuple[str, str]]:
     spec, attrs = result.spec, result.dataset.attrs
     yield "protocol", result.protocol
     if "knot" in attrs:
-        yield "knot", str(attrs["knot"])
+        yield "move" if result.protocol == "reidemeister" else "knot", str(attrs["knot"])
     if "pulled" in attrs:
         yield "pulled", f"{attrs['pulled'][:2]} clamped, {attrs['pulled'][2:]} pulled"
     if "preset" in spec:
@@ -74,12 +79,14 @@ def _asked(result: Result) -> Iterator[tuple[str, str]]:
 
 
 def _found(result: Result, report: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    if "separation_m" in report:
+    if result.protocol == "prison-escape":
         yield from _escape(report, result.last_held, result.spec["duration"])
-    elif "end_rotation_rad" in report:
+    elif result.protocol == "tighten":
+        yield from _tightened(report, "until_still" in result.spec)
+    elif result.protocol == "bend-twist":
         yield from _bent(report)
     else:
-        yield from _tightened(report)
+        yield from _moved(report)
 
 
 def _escape(report: dict[str, Any], held: int, duration: float) -> Iterator[tuple[str, str]]:
@@ -97,14 +104,32 @@ def _escape(report: dict[str, Any], held: int, duration: float) -> Iterator[tupl
     yield "twist", f"{twist} {at}"
 
 
-def _tightened(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    times = report["times_s"]
+def _tightened(report: dict[str, Any], awaited: bool) -> Iterator[tuple[str, str]]:
+    times, still = report["times_s"], report["still_at_s"]
     at = f"at {times[-1]:.3g} s"
+    if awaited:
+        yield "still", f"no, not within {times[-1]:g} s" if still is None else f"at {still:.3g} s"
     yield "end to end", _span(report["end_to_end_m"], times)
     yield "length", _span(report["length_m"], times)
     yield "largest h kappa", f"{report['h_kappa_max'][-1]:.3f} {at}"
     yield "twist", f"{report['total_twist_rad'][-1]:+.3f} rad {at}"
     yield "largest log strain", f"{report['max_log_strain'][-1]:.3f} {at}"
+
+
+def _moved(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Energies in units of B/L, bending stiffness over free length."""
+    unit, crossings = report["B_over_L_J"], report["crossings"]
+    way = 1e3 * report["displacement_m"][-1]
+    yield "strands", f"{1e3 * report['length_m']:g} mm from grip to grip, ends {report['ends']}"
+    yield "way of moved ends", f"{way:.2f} mm in {report['times_s'][-1]:g} s"
+    yield "crossings", f"{crossings[0]} at the start, {crossings[-1]} at the end"
+    yield "unit of energy B/L", f"{unit:.3g} J"
+    yield "energy at the start", f"{report['energy_start_J'] / unit:.3f} B/L"
+    yield (
+        "highest energy",
+        f"{report['energy_top_J'] / unit:.3f} B/L, after {1e3 * report['top_at_m']:.2f} mm",
+    )
+    yield "energy at the end", f"{report['energy_end_J'] / unit:.3f} B/L"
 
 
 def _bent(report: dict[str, Any]) -> Iterator[tuple[str, str]]:

@@ -52,6 +52,11 @@ class Table:
         k = self.columns.index(name)
         return [row[k] for row in self.rows]
 
+    def only(self, *names: str) -> Table:
+        """The table with these columns alone."""
+        at = [self.columns.index(name) for name in names]
+        return Table(names, [tuple(row[k] for k in at) for row in self.rows])
+
     def write(self, path: Path) -> None:
         """Write it as CSV; what is not known stays empty.
 

@@ -7,9 +7,9 @@ import json
 import multiprocessing
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from functools import lru_cache, partial
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -111,34 +111,56 @@ def _run_all(
 ) -> Iterator[str]:
     """Run all, and name each when it is done; the first failure is raised when the others are through."""
     failures: list[str] = []
-    for label, outcome in _outcomes(specs, paths, fresh, workers):
-        try:
-            outcome()
-        except TorsadeError as error:
-            failures.append(f"{label}: {error}")
-        yield label
+    for outcomes in _outcomes(_batches(specs), specs, paths, fresh, workers):
+        for label, failure in outcomes.items():
+            if failure is not None:
+                failures.append(f"{label}: {failure}")
+            yield label
     if failures:
         raise TorsadeError("; ".join(failures))
 
 
+def _batches(specs: Mapping[str, Spec]) -> list[list[str]]:
+    """Labels of runs that start from the same drawing, together: one process builds that once."""
+    found: dict[object, list[str]] = {}
+    for label, spec in specs.items():
+        knot = getattr(spec, "knot", None)
+        shape = label if knot is None else (knot, getattr(spec, "pulled", None))
+        found.setdefault(shape, []).append(label)
+    return list(found.values())
+
+
 def _outcomes(
-    specs: Mapping[str, Spec], paths: Mapping[str, Path], fresh: bool, workers: int
-) -> Iterator[tuple[str, Callable[[], None]]]:
-    """Every run with what tells how it ended, in this process or as processes come to their end."""
-    if min(workers, len(specs)) <= 1:
-        for label, spec in specs.items():
-            yield label, partial(_run, spec, paths[label], fresh)
+    batches: list[list[str]],
+    specs: Mapping[str, Spec],
+    paths: Mapping[str, Path],
+    fresh: bool,
+    workers: int,
+) -> Iterator[dict[str, str | None]]:
+    """What failed, or None, by label: in this process, or as processes come to their end."""
+    jobs = [{label: (specs[label], paths[label]) for label in batch} for batch in batches]
+    if min(workers, len(jobs)) <= 1:
+        for job in jobs:
+            for label, one in job.items():
+                yield _run({label: one}, fresh)
         return
     # Fresh interpreters: forking one that has threads, as compiled kernels do, can hang.
-    with ProcessPoolExecutor(min(workers, len(specs)), multiprocessing.get_context("spawn")) as pool:
-        waiting = {pool.submit(_run, spec, paths[label], fresh): label for label, spec in specs.items()}
+    with ProcessPoolExecutor(min(workers, len(jobs)), multiprocessing.get_context("spawn")) as pool:
+        waiting = [pool.submit(_run, job, fresh) for job in jobs]
         try:
             for future in as_completed(waiting):
-                yield waiting[future], future.result
+                yield future.result()
         finally:
             pool.shutdown(cancel_futures=True)
 
 
-def _run(spec: Spec, path: Path, fresh: bool) -> None:
-    """One run, on disk."""
-    spec.run(out=path, resume=not fresh, overwrite=fresh)
+def _run(job: Mapping[str, tuple[Spec, Path]], fresh: bool) -> dict[str, str | None]:
+    """Runs, on disk, and what failed of each."""
+    failed: dict[str, str | None] = {}
+    for label, (spec, path) in job.items():
+        try:
+            spec.run(out=path, resume=not fresh, overwrite=fresh)
+            failed[label] = None
+        except TorsadeError as error:
+            failed[label] = str(error)
+    return failed

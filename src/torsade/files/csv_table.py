@@ -10,7 +10,7 @@ from torsade.errors import TorsadeError, quoted
 from torsade.files.gathered import Gathered, rows
 from torsade.files.regular import lines
 
-__all__ = ["HEADER", "read", "written"]
+__all__ = ["HEADER", "SEPARATORS", "cells_of", "read", "written"]
 
 HEADER = "strand,x,y,z"
 SEPARATORS = ",;\t"
@@ -37,7 +37,7 @@ def read(path: Path) -> Centerline:
         if not separator:
             separator = _separator(line, where)
             continue
-        cells = _cells(line, separator, where)
+        cells = cells_of(line, separator, where)
         strand = _strand(cells, where)
         count = len(found.numbers)
         if strand == count:
@@ -51,7 +51,8 @@ def read(path: Path) -> Centerline:
     return found.centerline()
 
 
-def _cells(line: str, separator: str, where: str) -> list[str]:
+def cells_of(line: str, separator: str, where: str) -> list[str]:
+    """The cells of a line, without blanks around them."""
     table = csv.reader([line.strip(" \r\n")], delimiter=separator, strict=True, skipinitialspace=True)
     try:
         return [cell.strip() for cell in next(table)]
@@ -62,7 +63,7 @@ def _cells(line: str, separator: str, where: str) -> list[str]:
 def _separator(line: str, where: str) -> str:
     """What separates the columns of a header."""
     for separator in SEPARATORS:
-        if ",".join(_cells(line, separator, where)).lower() == HEADER:
+        if ",".join(cells_of(line, separator, where)).lower() == HEADER:
             return separator
     raise TorsadeError(
         f"{where} is {quoted(line.strip(), 40)}, not the header; begin with the line {HEADER!r}, with "

@@ -8,12 +8,22 @@ import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, NamedTuple
 
 from torsade.errors import TorsadeError, quoted, reason_of
 from torsade.places import private, writing
 
-__all__ = ["LARGEST_FILE", "LONGEST_LINE", "finite_number", "lines", "opened", "replace_file", "whole_number"]
+__all__ = [
+    "LARGEST_FILE",
+    "LONGEST_LINE",
+    "NODES",
+    "Kind",
+    "finite_number",
+    "lines",
+    "opened",
+    "replace_file",
+    "whole_number",
+]
 
 LARGEST_FILE = 64 * 2**20
 """Largest file read [bytes]: about a million nodes, ten times what a run can use."""
@@ -22,8 +32,29 @@ LONGEST_LINE = 2**20
 """Longest line read [characters]: a polyline of 100 000 nodes in one line of an OBJ file."""
 
 
+class Kind(NamedTuple):
+    """What is expected in a file, as messages say it.
+
+    Attributes:
+        things: what is in it: "nodes".
+        example: the name of such a file: "knot.csv".
+        owner: what has so many of them: "a centerline".
+        fewer: what to do with too many: "resample it to fewer nodes".
+        line: what stands in a line: "one node".
+    """
+
+    things: str
+    example: str
+    owner: str
+    fewer: str
+    line: str
+
+
+NODES = Kind("nodes", "knot.csv", "a centerline", "resample it to fewer nodes", "one node")
+
+
 @contextmanager
-def opened(path: Path) -> Iterator[tuple[BinaryIO, int]]:
+def opened(path: Path, kind: Kind = NODES) -> Iterator[tuple[BinaryIO, int]]:
     """A regular file, open to read, and its size [bytes].
 
     Raises:
@@ -34,25 +65,25 @@ def opened(path: Path) -> Iterator[tuple[BinaryIO, int]]:
     try:
         found = path.stat()
         if stat.S_ISDIR(found.st_mode):
-            raise TorsadeError(f"{name} is a directory; give a file of nodes, such as knot.csv")
+            raise TorsadeError(f"{name} is a directory; give a file of {kind.things}, such as {kind.example}")
         if not stat.S_ISREG(found.st_mode):
-            raise TorsadeError(f"{name} is a pipe or a device; give a regular file of nodes")
+            raise TorsadeError(f"{name} is a pipe or a device; give a regular file of {kind.things}")
         if found.st_size > LARGEST_FILE:
             raise TorsadeError(
                 f"{name} has {found.st_size / 2**20:.0f} MB, more than the {LARGEST_FILE / 2**20:.0f} MB "
-                "a centerline may have; resample it to fewer nodes"
+                f"{kind.owner} may have; {kind.fewer}"
             )
         with path.open("rb") as file:
             yield file, found.st_size
     except FileNotFoundError:
-        raise TorsadeError(f"there is no file {name}; give the path of a file of nodes") from None
+        raise TorsadeError(f"there is no file {name}; give the path of a file of {kind.things}") from None
     except (OSError, ValueError) as error:
         if isinstance(error, TorsadeError):
             raise
         raise TorsadeError(f"cannot read {name} ({reason_of(error)}); give a readable file") from None
 
 
-def lines(path: Path) -> Iterator[tuple[str, str]]:
+def lines(path: Path, kind: Kind = NODES) -> Iterator[tuple[str, str]]:
     """Where each line of a text file is, "'knot.csv', line 3", and the line; never much of it in memory.
 
     Raises:
@@ -60,7 +91,7 @@ def lines(path: Path) -> Iterator[tuple[str, str]]:
     """
     name = repr(str(path))
     binary = f"{name} is not a text file; give numbers as text, in UTF-8"
-    with opened(path) as (file, _):
+    with opened(path, kind) as (file, _):
         text = io.TextIOWrapper(file, encoding="utf-8-sig", newline=None)
         number = 0
         while True:
@@ -75,7 +106,8 @@ def lines(path: Path) -> Iterator[tuple[str, str]]:
                 raise TorsadeError(binary)
             if len(line) > LONGEST_LINE:
                 raise TorsadeError(
-                    f"{name}, line {number} is longer than {LONGEST_LINE} characters; give one node per line"
+                    f"{name}, line {number} is longer than {LONGEST_LINE} characters; give {kind.line} per "
+                    "line"
                 )
             yield f"{name}, line {number}", line
 

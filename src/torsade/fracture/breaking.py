@@ -87,7 +87,7 @@ def advance_unbroken(
     most: int,
     g: Work,
 ) -> int:
-    """As `torsade.motion.verlet.advance`, or BROKEN after the step in which some hinge comes to its strength."""
+    """As `torsade.motion.verlet.advance`, or BROKEN after the step in which a hinge comes to its strength."""
     begin(a, rod, inertia, bc, state, g)
     status = REACHED
     last = min(until, clock.steps[0] + most)

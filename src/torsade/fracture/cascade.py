@@ -1,9 +1,9 @@
-"""The fracture cascade: a bent and twisted rod breaks, and its pieces break again in the waves of the release.
+"""The fracture cascade: a bent, twisted rod breaks, and its pieces break again in the waves of the release.
 
 A hinge breaks in the step in which its stress comes to its strength: its node is split in two, each with its
 half of the mass and the velocity of the whole. Every piece breaks at most once in a step, where stress over
-strength is largest. No break is nearer than the least fragment length lambda to an end of its piece (thesis
-3.3). Both sides of every break are followed; pieces that no end holds go on, or stop (thesis Fig 3-1C).
+strength is largest. Once the rod is broken, no break is nearer than the least fragment length lambda to an
+end of its piece (thesis 3.3). Both sides of every break are followed; pieces that no end holds go on, or stop (thesis Fig 3-1C).
 """
 
 from __future__ import annotations
@@ -20,9 +20,12 @@ from torsade.assembly import Assembly
 from torsade.fracture.breaking import BROKEN, Bearing, advance_unbroken, stress_of_state
 from torsade.fracture.criteria import criterion
 from torsade.material import Material, Section
+from torsade.motion import verlet
 from torsade.motion.inertial import Inertial
 from torsade.motion.moving import Outcome
 from torsade.rod.elasticity import hinge_curvature
+
+NEVER = 2**62
 
 __all__ = ["Break", "Cascade", "Fracture", "most_breaks", "strengths"]
 
@@ -63,13 +66,13 @@ class Fracture(NamedTuple):
 
 
 def strengths(
-    assembly: Assembly, sigma_c: float, disorder: float = 0.0, seed: int = 0, grain: float = 1e-3
+    rest_length: Floats, sigma_c: float, disorder: float = 0.0, seed: int = 0, grain: float = 1e-3
 ) -> Floats:
-    """Strength of every hinge of a rod [Pa], shape (n_hinges,).
+    """Strength of every hinge of a rod [Pa], shape (n_hinges,), from its edge lengths (n_edges,) [m].
 
-    The rod consists of grains of equal length, each as strong as sigma_c (1 + disorder xi), xi normally
-    distributed, at least a tenth of sigma_c; a hinge is as strong as the weakest grain that touches the length
-    it stands for. So the same seed is the same rod at every number of nodes.
+    The rod consists of grains of one length, each as strong as sigma_c (1 + disorder xi), xi normally
+    distributed, at least a tenth of sigma_c; a hinge is as strong as the weakest grain within the halves of
+    the two edges that it stands for. So the same seed is the same rod at every number of nodes.
 
     Parameters
     ----------
@@ -78,15 +81,13 @@ def strengths(
     grain : length of a grain [m], such as the diameter
     """
     if disorder == 0.0:
-        return np.full(len(assembly.hinges), float(sigma_c))
-    length = float(assembly.rest_length.sum())
-    n = max(1, math.ceil(length / grain - 1e-9))
+        return np.full(len(rest_length) - 1, float(sigma_c))
+    ends = np.cumsum(rest_length)
+    n = max(1, math.ceil(ends[-1] / grain - 1e-9))
     xi = np.random.Generator(np.random.Philox(seed)).standard_normal(n)
     bears = sigma_c * np.maximum(1 + disorder * xi, 0.1)
-    bounds = np.concatenate([[0.0], np.cumsum(assembly.rest_length)])
-    middle = 0.5 * (bounds[1:] + bounds[:-1])
-    first = np.floor(middle[:-1] / length * n + 1e-9).astype(int)
-    last = np.ceil(middle[1:] / length * n - 1e-9).astype(int)
+    middle = (ends - 0.5 * rest_length) / ends[-1] * n
+    first, last = np.floor(middle[:-1] + 1e-9).astype(int), np.ceil(middle[1:] - 1e-9).astype(int)
     return np.array([bears[i : max(i + 1, j)].min() for i, j in zip(first, last, strict=True)])
 
 
@@ -114,13 +115,23 @@ class Cascade:
     ----------
     motion : one open fiber, as it is at t = 0, with what holds it
     fracture : strengths, criterion and least length
+    followed : how long after the first break the cascade is over [s]
     """
 
-    def __init__(self, motion: Inertial, fracture: Fracture, material: Material, section: Section) -> None:
+    def __init__(
+        self,
+        motion: Inertial,
+        fracture: Fracture,
+        material: Material,
+        section: Section,
+        followed: float = math.inf,
+    ) -> None:
         self.motion = motion
         self.fracture = fracture
         self.breaks: list[Break] = []
         self.released = 0.0
+        self.first_distance = math.nan
+        self._followed = followed
         self._moduli = material.E_b * section.h, material.mu * section.h
         self._criterion = criterion(fracture.criterion)
         self._strength = fracture.strength.copy()
@@ -147,7 +158,7 @@ class Cascade:
         return self.motion.assembly.fiber_length.copy()
 
     def advance(self, until: float, max_steps: int = 2**62) -> Outcome:
-        """Advance to the first step at the time until [s] or after, in at most max_steps steps, breaking on the way.
+        """Advance to the first step at the time until [s] or after, in at most max_steps steps; break on the way.
 
         Raises
         ------
@@ -156,20 +167,32 @@ class Cascade:
         """
         m, last = self.motion, self.motion.steps + max_steps
         while True:
+            end = self._end()
             status = advance_unbroken(
                 m.assembly, m.rod, m.inertia, m.boundary, self._bearing, m.state, m.clock,
-                m.steps_until(until), last - m.steps, m.work,
+                min(m.steps_until(until), end), last - m.steps, m.work,
             )  # fmt: skip
             if status != BROKEN:
                 m.check(status)
-                return Outcome(status)
+                over = m.steps >= end and status == verlet.REACHED
+                return Outcome.OVER if over else Outcome(status)
             self.snap([int(k) for k in self._bearing.worst if k >= 0])
+
+    def _end(self) -> int:
+        """The step after which the cascade is over."""
+        return (
+            self.motion.steps_until(self.breaks[0].time + self._followed)
+            if self.breaks and self._followed < math.inf
+            else NEVER
+        )
 
     def snap(self, hinges: list[int]) -> None:
         """Break the rod at these hinges, at most one of each piece, whatever the stress there."""
         m = self.motion
         self.measure()
         stored = m.energies().total
+        if not self.breaks:
+            self.first_distance = float(np.linalg.norm(m.state.x[-1] - m.state.x[0]))
         stress, kappa, twist_density = self._bearing.stress, self.kappa(), self.twist_density()
         for k in hinges:
             place = float(m.assembly.rest_length[: m.assembly.hinges[k, 1]].sum())
@@ -199,11 +222,13 @@ class Cascade:
         m.boundary = m.boundary._replace(held=held, turned=turned)
 
     def _bears(self) -> Bearing:
-        """What hinges bear, infinite stress where a break would make too short a piece, or in frozen pieces."""
+        """What hinges bear: any stress where a break would make too short a piece, or in frozen pieces."""
         a, held = self.motion.assembly, self.motion.boundary.held
         along = a.edge_arclength[a.hinges[:, 0]] + 0.5 * a.rest_length[a.hinges[:, 0]]
         shorter = np.minimum(along, a.fiber_length[a.edge_fiber[a.hinges[:, 0]]] - along)
-        may = (shorter > _above(self.fracture.min_fragment)) & ~held[a.hinges[:, 2]]
+        may = ~held[a.hinges[:, 2]]
+        if self.breaks:
+            may &= shorter > _above(self.fracture.min_fragment)
         return Bearing(
             self._criterion,
             *self._moduli,
@@ -239,7 +264,7 @@ class Cascade:
     def saved(self) -> dict[str, NDArray[Any]]:
         """Copies of the arrays that decide how the cascade goes on, by name."""
         breaks = np.array(self.breaks, dtype=np.float64).reshape(-1, len(Break._fields))
-        own = {"breaks": breaks, "released": np.array(self.released)}
+        own = {"breaks": breaks, "ledger": np.array([self.released, self.first_distance])}
         return self.motion.saved() | own
 
     def recover(self, saved: Mapping[str, NDArray[Any]]) -> None:
@@ -251,6 +276,6 @@ class Cascade:
             if self.fracture.frozen:
                 self._freeze()
         self.breaks = [Break(*(float(value) for value in row)) for row in saved["breaks"]]
-        self.released = float(saved["released"])
+        self.released, self.first_distance = (float(value) for value in saved["ledger"])
         self.motion.recover(saved)
         self._bearing = self._bears()

@@ -34,7 +34,7 @@ from numpy.typing import NDArray
 from torsade.errors import TorsadeError
 from torsade.topology.diagram import Diagram
 
-__all__ = ["Drawing", "Triangulation", "packed", "packing_radii", "triangulated"]
+__all__ = ["Drawing", "Triangulation", "packed", "packing_centres", "packing_radii", "triangulated"]
 
 FloatArray = NDArray[np.float64]
 IndexArray = NDArray[np.intp]
@@ -189,6 +189,25 @@ def packing_radii(net: Triangulation) -> FloatArray:
         step *= min(1.0, 1.0 / np.abs(step).max())
         Y[inner] = np.minimum(Y[inner] * np.exp(step), 1 - 1e-12)
     raise TorsadeError("no drawing of the diagram was found; simplify it first")  # pragma: no cover
+
+
+def packing_centres(net: Triangulation) -> ComplexArray:
+    """Centres of the circles of the packing as Euclid sees them; joined, they make the triangles.
+
+    The circle through the ends of a diameter that points away from the middle of the disc; on the boundary,
+    the one that touches the unit circle and a neighbour where the packing says.
+    """
+    touch = _Touching(net, packing_radii(net))
+    z = np.zeros(len(net.boundary), dtype=complex)
+    for v, c in touch.centre.items():
+        out = c / abs(c) if c else 1.0
+        z[v] = (_from(c, touch.Y[v] * out) + _from(c, -touch.Y[v] * out)) / 2
+        for w in touch.direction[v]:
+            if net.boundary[w]:
+                far, near = touch.far_point(v, w), touch.point(v, w)
+                size = abs(near - far) ** 2 / (2 * (1 - (near * far.conjugate()).real))
+                z[w] = far * (1 - size)
+    return z
 
 
 def _angle(Y: FloatArray, A: FloatArray, B: FloatArray) -> FloatArray:

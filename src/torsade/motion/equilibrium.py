@@ -78,6 +78,12 @@ class Bent(NamedTuple):
         return float(self.x[-1, 0])
 
     @property
+    def grips(self) -> tuple[Floats, Floats]:
+        """Directions of the fiber at its two ends, unit vectors (3,)."""
+        first, last = self.shape.edge[0], self.shape.edge[-1]
+        return first / np.linalg.norm(first), last / np.linalg.norm(last)
+
+    @property
     def kappa_max(self) -> float:
         """Largest curvature [1/m]."""
         return float(self.kappa.max())

@@ -3,11 +3,12 @@
     rho A x_tt = F_s,     rho J (omega_t + 2 b omega) = (C theta')_s + ...,     |x_s| = 1
 
 Bending and twist are stored as everywhere in this package. Nodes carry mass, edges the rotary inertia rho J l
-of their spin. That of bending, rho I, is left out, as in thesis 3.5, and with it the couple rho J omega t_t of
-the spin's turning axis: both are smaller than what is kept by about (h/lambda)^2 at wavelength lambda.
+of their spin. That of bending, rho I, is left out, as in thesis 3.5, and with it the couple rho J omega t_t
+of the spin's turning axis: both are smaller than what is kept by about (h/lambda)^2 at wavelength lambda.
 
-Ends are those of `torsade.motion.ends`: free, hinged (`clamp`), clamped (`clamp` with tangent=True), or moved.
-A clamp holds the edge at the end, so that the fiber bends from the middle of that edge on.
+Ends are those of `torsade.motion.ends`: free, hinged (`clamp`), clamped (with tangent=True), or moved.
+A clamp holds the edge at the end, so that the fiber bends from the middle of that edge on; with
+`torsade.motion.grips` it bends from its very end.
 """
 
 from __future__ import annotations
@@ -57,16 +58,22 @@ class Energies(NamedTuple):
         return self.kinetic + self.spin + self.bend + self.twist
 
 
-def longest_step(assembly: Assembly, material: Material, section: Section) -> float:
-    """Longest stable step [s], 2 over the highest frequency that the shortest edge l holds.
+def longest_step(assembly: Assembly, material: Material, section: Section, boundary: Boundary) -> float:
+    """Longest stable step [s], 2 over the highest frequency that the shortest edge l that moves holds.
 
-    Of twist waves that is 2 c_theta/l, c_theta = sqrt(mu/rho); of bending waves 4 sqrt(B/rho A)/l^2, and up to
-    twice that at free ends, whose nodes carry half a mass.
+    Of twist waves that is 2 c_theta/l, c_theta = sqrt(mu/rho); of bending waves 4 sqrt(B/rho A)/l^2, and up
+    to twice that at free ends, whose nodes carry half a mass.
     """
-    l = float(assembly.rest_length.min())
+    l = _shortest(assembly, boundary)
     twist = 2 * math.sqrt(material.mu / material.rho) / l
     bend = 8 * math.sqrt(material.E_b * section.I / (material.rho * section.A)) / l**2
-    return 2 / max(twist, bend)
+    return 2 / max(twist, bend, 1e-300)
+
+
+def _shortest(assembly: Assembly, boundary: Boundary) -> float:
+    """Length of the shortest edge that moves [m], infinite if there is none."""
+    moves = ~boundary.held[assembly.edges].all(axis=1)
+    return float(assembly.rest_length[moves].min(initial=math.inf))
 
 
 class Inertial:
@@ -78,8 +85,8 @@ class Inertial:
     Parameters
     ----------
     step : [s]; by default `STEP`, or `SAFETY` times the longest stable one where that is less
-    attached_moment : (n_edges,) moments of inertia of what turns along with edges [kg m^2], by default none;
-        damping acts on the fiber alone
+    attached_moment : (n_edges,) moments of inertia of what turns along with edges [kg m^2], by default none
+    damped_moment : (n_edges,) moments of what is damped [kg m^2], by default those of the fiber
 
     Raises
     ------
@@ -98,18 +105,19 @@ class Inertial:
         *,
         tolerance: float = TOLERANCE,
         attached_moment: Floats | None = None,
+        damped_moment: Floats | None = None,
     ) -> None:
         if assembly.closed.any():
             raise TorsadeError(
                 f"fiber {int(np.argmax(assembly.closed))} is closed, and only open fibers move with inertia; "
                 "cut it open"
             )
-        longest = longest_step(assembly, material, section)
+        longest = longest_step(assembly, material, section, boundary)
         dt = min(STEP, SAFETY * longest) if step is None else step
         if not 0 < dt < longest:
             raise TorsadeError(
                 f"a step of {dt:.3g} s is not stable with edges of "
-                f"{1e3 * float(assembly.rest_length.min()):.3g} mm; give one above 0 and below {longest:.3g} s, "
+                f"{1e3 * _shortest(assembly, boundary):.3g} mm; give one above 0 and below {longest:.3g} s, "
                 "or fewer nodes"
             )
         moment = material.rho * section.J * assembly.rest_length
@@ -119,7 +127,9 @@ class Inertial:
         self.inertia = verlet.Inertia(
             material.rho * section.A * assembly.node_length,
             total,
-            np.exp(-material.twist_damping * dt * moment / total),
+            np.exp(
+                -material.twist_damping * dt * (moment if damped_moment is None else damped_moment) / total
+            ),
         )
         self.boundary = boundary
         self.state = state.copy()

@@ -12,11 +12,12 @@ __all__ = ["Motion", "Outcome"]
 
 
 class Outcome(Enum):
-    """Why a motion paused: at the time asked for, after the steps asked for, or slipped apart."""
+    """Why a motion paused: at the time asked for, after the steps asked for, slipped apart, or all over."""
 
     REACHED = 0
     SLIPPED = 1
     PAUSED = 5
+    OVER = 7
 
 
 class Motion(Protocol):

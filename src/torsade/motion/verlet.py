@@ -1,7 +1,7 @@
 """Steps of inextensible fibers with inertia, compiled: Verlet with edge lengths kept, and damped twist.
 
-One step of length dt, from forces and torques at its start to those at its end (Andersen 1983 for the lengths,
-the symmetric splitting for the damping):
+One step of length dt, from forces and torques at its start to those at its end (Andersen 1983 for the
+lengths, the symmetric splitting for the damping):
 
     omega <- exp(-b dt) omega          half of the damping, exact
     v, omega <- half a kick by forces and torques

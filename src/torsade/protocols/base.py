@@ -51,6 +51,9 @@ class Spec(BaseModel, ABC):
     }
     """What to say to those who give a field that this protocol does not have."""
 
+    pictured: ClassVar[bool] = True
+    """Whether there is a picture to draw of a result."""
+
     protocol: str
     material: str = Field(
         "nylon", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
@@ -155,6 +158,9 @@ class Trial(NamedTuple):
     catch : called with a time [s] when nothing resists the load: bring the fibers to where something does,
         at that time at the latest, and say how, or None where there is no such place
     about : attributes of the result, in words
+    over : asked whenever something is recorded after t = 0: whether there is nothing left to see
+    later : times [s] at which ends and loads change
+    begin : called with the present time [s] before the fibers move on: put these ends and loads in place
     """
 
     motion: Motion
@@ -170,6 +176,9 @@ class Trial(NamedTuple):
     sample: Callable[[], dict[str, float]] = dict
     catch: Callable[[float], Outcome | None] = lambda until: None
     about: Mapping[str, str] = MappingProxyType({})
+    over: Callable[[], bool] = lambda: False
+    later: tuple[float, ...] = ()
+    begin: Callable[[float], None] = lambda time: None
 
 
 class Driven(Spec):

@@ -47,8 +47,9 @@ def drive(
             motion.recover(recording.saved)
         clock = _Clock(spec.lasting, motion, tell)
         with Patience(clock.stopping) as patience:
-            loose_at = _record(spec, trial, recording, clock, patience)
-            return recording.finish(trial.conclude(recording.samples(), loose_at))
+            loose_at, over = _record(spec, trial, recording, clock, patience)
+            numbers = dict(trial.conclude(recording.samples(), loose_at))
+            return recording.finish(numbers | ({"over_at_s": motion.time} if over else {}))
     except KeyboardInterrupt:
         recording.stop("interrupted")
         raise Interrupted(recording.reached, recording.done, recording.part) from None
@@ -124,11 +125,12 @@ def _sample_times(spec: Driven, trial: Trial) -> Floats:
 
 
 def _stops(spec: Driven, trial: Trial) -> list[tuple[float, bool, bool]]:
-    """Times at which something is recorded [s], and whether that is a frame, a sample or both."""
+    """Times at which a run stops [s], and whether for a frame, a sample, both, or other ends and loads."""
     frames = np.linspace(0.0, spec.lasting, spec.frames + 1)
     stops: list[tuple[float, bool, bool]] = []
     marked = [(t, True, False) for t in frames.tolist()]
     marked += [(t, False, True) for t in _sample_times(spec, trial).tolist()]
+    marked += [(t, False, False) for t in trial.later if t < spec.lasting]
     for t, frame, sample in sorted(marked, key=lambda stop: stop[0]):
         if stops and t - stops[-1][0] <= 1e-9 * spec.lasting:
             t, *before = stops.pop()
@@ -139,27 +141,35 @@ def _stops(spec: Driven, trial: Trial) -> list[tuple[float, bool, bool]]:
 
 def _record(
     spec: Driven, trial: Trial, recording: Recording, clock: _Clock, patience: Patience
-) -> float | None:
-    """Move from stop to stop to the end; returns when nothing resisted the load any more [s], or None."""
+) -> tuple[float | None, bool]:
+    """Move from stop to stop to the end, or until nothing resists the load, or all is over.
+
+    Returns when nothing resisted the load any more [s], or None, and whether all was over.
+    """
     motion = trial.motion
     began = time.perf_counter() - recording.wall
     before = max(recording.reached, motion.time) if recording.done else -math.inf
+    if motion.time > 0 and trial.over():
+        return None, True
     for t, frame, sample in _stops(spec, trial):
         if t <= before * (1 + 1e-9):  # steps of one length end at a stop or just after it
             continue
+        trial.begin(motion.time)
         outcome = Outcome.REACHED if t == 0 else _advance(trial, t, clock, patience)
-        slipped = outcome is Outcome.SLIPPED
-        if not slipped or motion.time > before:
-            if sample or (slipped and trial.sampled):
+        ended = outcome in (Outcome.SLIPPED, Outcome.OVER)
+        if not ended or motion.time > before:
+            if sample or (ended and trial.sampled):
                 recording.sample({"time": motion.time} | trial.sample())
-            if frame or slipped:
+            if frame or ended:
                 recording.add(trial.frame())
             recording.keep(motion.saved(), motion.steps, time.perf_counter() - began)
-        if slipped:
-            return motion.time
+        if ended:
+            return (motion.time if outcome is Outcome.SLIPPED else None), outcome is Outcome.OVER
+        if t > 0 and (frame or sample) and trial.over():
+            return None, True
         before = t
         clock.tick()
-    return None
+    return None, False
 
 
 def _advance(trial: Trial, until: float, clock: _Clock, patience: Patience) -> Outcome:

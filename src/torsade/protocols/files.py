@@ -16,13 +16,25 @@ from typing import Any
 from torsade.errors import TorsadeError, reason_of
 from torsade.protocols.base import Spec
 from torsade.protocols.bend_twist import BendTwist
+from torsade.protocols.pendulum import Pendulum
 from torsade.protocols.prison_escape import PrisonEscape
+from torsade.protocols.reidemeister import Reidemeister
+from torsade.protocols.snap_quench import SnapQuench
+from torsade.protocols.snap_twist import SnapTwist
 from torsade.protocols.tighten import Tighten
 
 __all__ = ["PROTOCOLS", "load_spec", "merged", "read_fields"]
 
 PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
-    {"prison-escape": PrisonEscape, "tighten": Tighten, "bend-twist": BendTwist}
+    {
+        "prison-escape": PrisonEscape,
+        "tighten": Tighten,
+        "reidemeister": Reidemeister,
+        "bend-twist": BendTwist,
+        "snap-twist": SnapTwist,
+        "snap-quench": SnapQuench,
+        "pendulum": Pendulum,
+    }
 )
 """The specification of every protocol, by name."""
 
@@ -68,7 +80,7 @@ def read_fields(path: str | Path) -> dict[str, Any]:
     protocol = fields.get("protocol")
     if protocol is None:
         raise TorsadeError(
-            f'{name} names no protocol; add a line protocol = "prison-escape" or protocol = "tighten"'
+            f'{name} names no protocol; add a line such as protocol = "prison-escape"; there are {", ".join(PROTOCOLS)}'
         )
     if not isinstance(protocol, str) or protocol not in PROTOCOLS:
         near = difflib.get_close_matches(str(protocol), PROTOCOLS, n=1)

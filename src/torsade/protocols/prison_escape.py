@@ -11,7 +11,8 @@ from pydantic import Field, field_validator, model_validator
 
 from torsade.errors import TorsadeError
 from torsade.protocols.base import Positive
-from torsade.protocols.pulled import Experiment, Pulled
+from torsade.protocols.knotted import Knotted
+from torsade.protocols.pulled import Experiment
 from torsade.units import Force, Length
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ _AXES = {"x": 0, "y": 1, "z": 2}
 _ENDS = re.compile(r"([AB])([01])([AB])([01])")
 
 
-class PrisonEscape(Pulled):
+class PrisonEscape(Knotted):
     """Pull a bend by one end while another is clamped, and see how fast it gives way.
 
     Strand 0 of a centerline file is A, strand 1 is B; end 0 of a strand is its first node, end 1 its
@@ -36,7 +37,7 @@ class PrisonEscape(Pulled):
     """
 
     hints: ClassVar[Mapping[str, str]] = {
-        **Pulled.hints,
+        **Knotted.hints,
         "bend": "there is no field 'bend'; did you mean 'knot'?",
         "name": "there is no field 'name'; did you mean 'knot'?",
         "length": "there is no field 'length'; a built-in knot takes 'lead', a centerline has its own",

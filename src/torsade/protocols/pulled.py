@@ -1,4 +1,4 @@
-"""What the protocols that pull on knots have in common: shape, model and resolution."""
+"""What the protocols of overdamped fibers, pulled or moved, have in common: model and resolution."""
 
 from __future__ import annotations
 
@@ -6,15 +6,14 @@ import dataclasses
 import hashlib
 from abc import abstractmethod
 from collections.abc import Callable, Mapping
-from pathlib import PurePath
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 
 from pydantic import Field, field_validator, model_validator
 
-from torsade.errors import QuantityError, TorsadeError, quoted
+from torsade.errors import QuantityError, TorsadeError
 from torsade.protocols.base import Driven, Positive, Trial
-from torsade.units import Length, Number, Time, Viscosity, quantity
+from torsade.units import Length, Number, Time, Viscosity
 
 if TYPE_CHECKING:
     from torsade.arrays import Floats
@@ -58,6 +57,9 @@ COMMON = (
     "dissipation",
     "position",
     "log_strain",
+    "strain_stretch",
+    "strain_bend",
+    "strain_twist",
 )
 """What every protocol that pulls records."""
 
@@ -76,6 +78,8 @@ class Experiment(NamedTuple):
         say whether there is such a place
     sampled : measures that `conclude` needs, recorded at times that do not depend on the number of frames
     about : attributes of the result, in words
+    over : asked whenever something is recorded after t = 0: whether there is nothing left to see
+    later : ends and loads that take the place of those before at given times [s], in order of time
     """
 
     boundary: Boundary
@@ -85,10 +89,18 @@ class Experiment(NamedTuple):
     catch: Callable[[State], bool] = lambda state: False
     sampled: tuple[str, ...] = ()
     about: Mapping[str, str] = MappingProxyType({})
+    over: Callable[[State], bool] = lambda state: False
+    later: tuple[tuple[float, Boundary], ...] = ()
+
+    def boundary_at(self, time: float) -> Boundary:
+        """Ends and loads from this time [s] on."""
+        # A stop may lie the billionth part of a run before the time that it stands for.
+        begun = [boundary for start, boundary in self.later if start <= time * (1 + 1e-8)]
+        return begun[-1] if begun else self.boundary
 
 
 class Pulled(Driven):
-    """A specification of one that pulls on a knot, in overdamped motion."""
+    """A specification of fibers in overdamped motion."""
 
     hints: ClassVar[Mapping[str, str]] = {
         **Driven.hints,
@@ -99,17 +111,6 @@ class Pulled(Driven):
         "dt": "there is no field 'dt'; did you mean 'fixed_step'?",
     }
 
-    knot: str | None
-    centerline: str | None
-    length_unit: str | None = Field(
-        None, description="Unit of x, y, z in the centerline's file, such as mm; by default m."
-    )
-    smooth: Annotated[Length, Field(ge=0)] | None = Field(
-        None,
-        description="Smooth the centerline over this length first, without changing its knot; by default not "
-        "at all.",
-        examples=["0.1 mm"],
-    )
     eta: Annotated[Viscosity, Positive] | None = Field(
         None, description="Internal viscosity; by default the material's."
     )
@@ -168,18 +169,6 @@ class Pulled(Driven):
             raise QuantityError(f"is {value}; give a whole number")
         return value
 
-    @field_validator("length_unit")
-    @classmethod
-    def _a_unit(cls, unit: str | None) -> str | None:
-        if unit is not None:
-            try:
-                quantity(f"1 {unit}", "length")
-            except QuantityError:
-                raise QuantityError(
-                    f"{quoted(unit)} is no unit of length; give m, mm, cm, um or in"
-                ) from None
-        return unit
-
     @model_validator(mode="after")
     def _one_way_to_step(self) -> Pulled:
         if self.fixed_step is not None and self.tolerance is not None:
@@ -188,21 +177,6 @@ class Pulled(Driven):
                 "fixed_step for steps of one length, or tolerance for error-controlled steps"
             )
         return self
-
-    def check_shape(self, advice: str) -> None:
-        """Refuse two shapes, or none, or a unit for none."""
-        if self.knot is not None and self.centerline is not None:
-            raise TorsadeError(
-                f"knot {self.knot!r} and centerline {self.centerline!r} are both given; give one of them"
-            )
-        if self.knot is None and self.centerline is None:
-            raise TorsadeError(f"nothing to pull is given; {advice}")
-        if self.knot is not None and self.length_unit is not None:
-            raise TorsadeError(
-                f"length_unit {self.length_unit!r} belongs to a centerline; leave it out, or give one"
-            )
-        if self.knot is not None and self.smooth is not None:
-            raise TorsadeError("a built-in knot needs no smoothing; leave smooth out, or give a centerline")
 
     def check_strain(self, force: float) -> None:
         """Refuse a pull [N] under which the fiber is no longer elastic in any sense."""
@@ -240,12 +214,10 @@ class Pulled(Driven):
 
     @property
     def node_spacing(self) -> float | None:
-        """Greatest distance between nodes [m]; None to keep the nodes as they are given."""
+        """Greatest distance between nodes [m]; None where nodes are kept as they are given."""
         if self.spacing is not None:
             return self.spacing
-        if self.preset == "published":
-            return PUBLISHED_SPACING * self.h if self.knot is not None else None
-        return STANDARD_SPACING * self.h
+        return (PUBLISHED_SPACING if self.preset == "published" else STANDARD_SPACING) * self.h
 
     @property
     def lasting(self) -> float:
@@ -265,9 +237,9 @@ class Pulled(Driven):
         }
 
     @property
+    @abstractmethod
     def shape_name(self) -> str:
-        """Name of what is pulled, for tables and titles: the knot's, or that of the centerline's file."""
-        return self.knot or PurePath(str(self.centerline)).stem
+        """Name of what is moved, for tables and titles."""
 
     @abstractmethod
     def configuration(self) -> Centerline:
@@ -310,7 +282,14 @@ class Pulled(Driven):
             sample=lambda: {name: does.measure(motion.state)[name] for name in does.sampled},
             catch=lambda until: _catch(does, motion, until),
             about={"knot": self.shape_name, **does.about},
+            over=lambda: does.over(motion.state),
+            later=tuple(time for time, _ in does.later),
+            begin=lambda time: _hold(motion, does.boundary_at(time)),
         )
+
+
+def _hold(motion: Motion, boundary: Boundary) -> None:
+    motion.boundary = boundary
 
 
 def _catch(experiment: Experiment, motion: Motion, until: float) -> Outcome | None:
@@ -338,6 +317,7 @@ def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, f
     from torsade import observables
 
     assembly, state, now = motion.assembly, motion.state, motion.measure()
+    strain = observables.surface_strain(assembly, state, radius)
     common: dict[str, float | Floats] = {
         "time": motion.time,
         "compression": now.compression,
@@ -349,6 +329,9 @@ def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, f
         "external_work": motion.external_work,
         "dissipation": motion.dissipation,
         "position": state.x,
-        "log_strain": observables.log_strain(assembly, state, radius),
+        "log_strain": strain.log,
+        "strain_stretch": strain.stretch,
+        "strain_bend": strain.bend,
+        "strain_twist": strain.twist,
     }
     return common | experiment.measure(state)

@@ -8,9 +8,10 @@ from torsade.centerline import Centerline, check
 from torsade.curve import length, resample
 from torsade.errors import TorsadeError
 from torsade.files import read_centerline
+from torsade.recording import BYTES_PER_NODE
 
 if TYPE_CHECKING:
-    from torsade.protocols.pulled import Pulled
+    from torsade.protocols.knotted import Knotted
 
 __all__ = ["check_built", "check_count", "check_frames", "open_strands"]
 
@@ -21,7 +22,7 @@ LARGEST_RESULT = 4_000_000_000
 """Most that positions and strains of all frames may take in memory [bytes]."""
 
 
-def open_strands(path: str, spec: Pulled, strands: int, wanted: str) -> Centerline:
+def open_strands(path: str, spec: Knotted, strands: int, wanted: str) -> Centerline:
     """Open strands from a file, checked as given, then resampled as the specification wants."""
     shape = read_centerline(path, spec.length_unit or "m")
     if len(shape.strands) != strands:
@@ -44,7 +45,7 @@ def open_strands(path: str, spec: Pulled, strands: int, wanted: str) -> Centerli
     return resampled
 
 
-def _smoothed(shape: Centerline, scale: float, spec: Pulled) -> Centerline:
+def _smoothed(shape: Centerline, scale: float, spec: Knotted) -> Centerline:
     """A measured shape without its noise, at the resolution of the run; never less smooth than asked for."""
     from torsade.knots.measured import clean
 
@@ -76,7 +77,7 @@ def check_built(shape: Centerline, radius: float) -> Centerline:
 
 def check_frames(frames: int, nodes: int) -> None:
     """Refuse more frames than memory holds."""
-    size = 16 * nodes
+    size = BYTES_PER_NODE * nodes
     if frames * size > LARGEST_RESULT:
         raise TorsadeError(
             f"{frames} frames of {nodes} nodes take {frames * size / 1e9:.1f} GB; give at most "

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, field_validator, model_validator
 
 from torsade.protocols.base import Positive
-from torsade.protocols.pulled import Experiment, Pulled
-from torsade.units import Force
+from torsade.protocols.knotted import Knotted
+from torsade.protocols.pulled import Experiment
+from torsade.units import Force, Velocity
 
 if TYPE_CHECKING:
     from torsade.assembly import Assembly, State
@@ -19,14 +20,15 @@ if TYPE_CHECKING:
 __all__ = ["Tighten"]
 
 
-class Tighten(Pulled):
+class Tighten(Knotted):
     """Pull the two ends of one knotted strand apart, along -x and +x, each with the same force.
 
-    The end with the smaller x is pulled along -x.
+    The end with the smaller x is pulled along -x. To see a knot come to rest, give `until_still`, and a
+    duration that leaves it time: 10 s are enough for most knots.
     """
 
     hints: ClassVar[Mapping[str, str]] = {
-        **Pulled.hints,
+        **Knotted.hints,
         "bend": "tighten pulls a knot in one strand; give a knot such as 'overhand', or run prison-escape",
         "length": "there is no field 'length'; a centerline is as long as given",
         "lead": "there is no field 'lead'; a built-in knot has the ends that it has, and so has a centerline",
@@ -46,6 +48,12 @@ class Tighten(Pulled):
         "optomechanical", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
     )
     force: Annotated[Force, Positive] = Field(0.02, description="Force on each end.")
+    until_still: Annotated[Velocity, Positive] | None = Field(
+        None,
+        description="End with the first frame in which no node is faster than this; by default go on for the "
+        "whole duration.",
+        examples=["1 um/s"],
+    )
 
     @field_validator("knot")
     @classmethod
@@ -93,7 +101,10 @@ class Tighten(Pulled):
                 "max_log_strain": float(observables.log_strain(assembly, now, self.h).max()),
             }
 
-        return Experiment(boundary, measure, lambda history: {}, lambda history, loose_at: {})
+        def still(now: State) -> bool:
+            return self.until_still is not None and observables.fastest(now) < self.until_still
+
+        return Experiment(boundary, measure, lambda history: {}, lambda history, loose_at: {}, over=still)
 
     @classmethod
     def report(cls, result: Result) -> dict[str, Any]:
@@ -109,6 +120,7 @@ class Tighten(Pulled):
             "h_kappa_max": data["h_kappa_max"].values.tolist(),
             "total_twist_rad": data["total_twist"].values.tolist(),
             "max_log_strain": data["max_log_strain"].values.tolist(),
+            "still_at_s": attrs.get("over_at_s"),
             "steps": attrs["steps"],
             "wall_s": attrs["wall_s"],
         }

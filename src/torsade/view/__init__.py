@@ -11,13 +11,27 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from torsade.view.plots import plot_separation, plot_tightening
+    from torsade.view.cascade import draw_pieces, plot_cascade
+    from torsade.view.plots import plot_move, plot_separation, plot_swing, plot_tightening
     from torsade.view.scene import render, render_result
 
-__all__ = ["plot_separation", "plot_tightening", "render", "render_result"]
+__all__ = [
+    "draw_pieces",
+    "plot_cascade",
+    "plot_move",
+    "plot_separation",
+    "plot_swing",
+    "plot_tightening",
+    "render",
+    "render_result",
+]
 
 _HOMES = {
+    "draw_pieces": "torsade.view.cascade",
+    "plot_cascade": "torsade.view.cascade",
+    "plot_move": "torsade.view.plots",
     "plot_separation": "torsade.view.plots",
+    "plot_swing": "torsade.view.plots",
     "plot_tightening": "torsade.view.plots",
     "render": "torsade.view.scene",
     "render_result": "torsade.view.scene",

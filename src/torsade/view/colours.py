@@ -71,6 +71,30 @@ def strain_colour(log_strain: ArrayLike) -> NDArray[np.float64]:
     return np.stack(channels, axis=-1)
 
 
+SRGB_TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
+"""From linear sRGB to CIE 1931 tristimulus values (IEC 61966-2-1), white at D65."""
+
+PRIMARIES = ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06))
+"""Chromaticities x, y of red, green and blue of sRGB, the corners of what it can show."""
+
+
+def chromaticity(rgb: ArrayLike) -> NDArray[np.float64]:
+    """CIE 1931 chromaticities x = X/(X + Y + Z), y = Y/(X + Y + Z) of sRGB colours.
+
+    Parameters
+    ----------
+    rgb : (..., 3) sRGB colours, each channel 0..1, none of them black
+
+    Returns
+    -------
+    (..., 2) x and y
+    """
+    c = np.asarray(rgb, dtype=np.float64)
+    linear = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+    xyz = linear @ SRGB_TO_XYZ.T
+    return np.asarray(xyz[..., :2] / xyz.sum(axis=-1, keepdims=True))
+
+
 def strand_colour(strand: int) -> NDArray[np.float64]:
     """sRGB colour (3,), each channel 0..1, of the strand with this number; the list repeats."""
     code = STRAND_COLOURS[strand % len(STRAND_COLOURS)]

@@ -78,7 +78,7 @@ def plot_separation(dataset: xarray.Dataset, path: str | Path) -> Path:
                 bbox=box,
             )
         _title(axes[0], dataset)
-        return _save(figure, path)
+        return save(figure, path)
 
 
 def plot_tightening(dataset: xarray.Dataset, path: str | Path) -> Path:
@@ -99,7 +99,63 @@ def plot_tightening(dataset: xarray.Dataset, path: str | Path) -> Path:
     with require("matplotlib").rc_context(STYLE):
         figure, axes = _stack(dataset, panels)
         _title(axes[0], dataset)
-        return _save(figure, path)
+        return save(figure, path)
+
+
+def plot_swing(dataset: xarray.Dataset, path: str | Path) -> Path:
+    """Plot the angle and the energy of a torsion pendulum against time.
+
+    Parameters
+    ----------
+    dataset : coordinate `time` [s], variables `angle (time)` [rad], `energy_spin` and `energy_twist (time)` [J]
+    path : the file to write; its ending chooses the format (png, pdf, svg)
+    """
+    _require(dataset, "angle", "energy_spin", "energy_twist")
+    energy = _values(dataset, "energy_spin") + _values(dataset, "energy_twist")
+    panels = [
+        ("angle (deg)", np.degrees(_values(dataset, "angle"))),
+        ("energy, share of the first", energy / energy[0]),
+    ]
+    with require("matplotlib").rc_context(STYLE):
+        figure, axes = _stack(dataset, panels)
+        axes[1].set_ylim(bottom=0.0)
+        return save(figure, path)
+
+
+ENERGIES = {"bend": "#2f6fa8", "twist": "#e39a2d", "stretch": "#41a08d", "contact": "#bf4560"}
+"""Colours of stored energies by kind."""
+
+
+def plot_move(dataset: xarray.Dataset, path: str | Path) -> Path:
+    """Plot stored energies and crossings of a Reidemeister move against the way of the moved ends.
+
+    Parameters
+    ----------
+    dataset : variables `displacement (time)` [m], `crossings (time)` and `energy_bend`, `energy_twist`,
+        `energy_stretch`, `energy_contact (time)` [J]; the attribute `knot`, the move, makes the title
+    path : the file to write; its ending chooses the format (png, pdf, svg)
+    """
+    _require(dataset, "displacement", "crossings", *(f"energy_{kind}" for kind in ENERGIES))
+    way = 1e3 * _values(dataset, "displacement")
+    parts = {kind: 1e9 * _values(dataset, f"energy_{kind}") for kind in ENERGIES}
+    with require("matplotlib").rc_context(STYLE):
+        figure = require("matplotlib.figure").Figure(figsize=(4.5, 3.4), layout="constrained")
+        above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+        above.plot(way, sum(parts.values()), color=INK, label="all")
+        for kind, values in parts.items():
+            above.plot(way, values, color=ENERGIES[kind], linewidth=1.0, label=kind, clip_on=False)
+        above.set_ylabel("energy (nJ)")
+        above.legend(frameon=False, ncols=5, fontsize=7, loc="lower right", bbox_to_anchor=(1.0, 1.0))
+        above.set_ylim(bottom=0.0)
+        crossings = _values(dataset, "crossings")
+        below.step(way, crossings, where="post", color=INK)
+        below.set_ylim(-0.3, crossings.max() + 0.7)
+        below.yaxis.get_major_locator().set_params(integer=True)
+        below.set(xlabel="way of the moved ends (mm)", ylabel="crossings")
+        below.margins(x=0.0)
+        figure.align_ylabels([above, below])
+        _title(above, dataset)
+        return save(figure, path)
 
 
 def plot_bent(dataset: xarray.Dataset, path: str | Path) -> Path:
@@ -132,7 +188,7 @@ def plot_bent(dataset: xarray.Dataset, path: str | Path) -> Path:
         bend.set_ylim(bottom=0.0)
         side.set_title(f"ends {x[-1] - x[0]:.4g} mm apart,  total twist {twist:.4g}°")
         figure.align_ylabels((side, above, bend))
-        return _save(figure, path)
+        return save(figure, path)
 
 
 def _require(dataset: xarray.Dataset, *names: str) -> None:
@@ -180,7 +236,8 @@ def _title(axis: Any, dataset: xarray.Dataset) -> None:
         axis.set_title(",  ".join(parts))
 
 
-def _save(figure: Any, path: str | Path) -> Path:
+def save(figure: Any, path: str | Path) -> Path:
+    """Write a matplotlib figure to a file (png, pdf, svg), or say why that cannot be done."""
     path = Path(path)
     if path.suffix.lower() not in ENDINGS:
         raise TorsadeError(f"cannot plot to {str(path)!r}; give a name that ends in {' or '.join(ENDINGS)}")

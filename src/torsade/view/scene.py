@@ -48,6 +48,7 @@ def render(
     fill: float | None = None,
     fade: float = 0.0,
     marks: Sequence[Mark] = (),
+    bar: bool = True,
 ) -> Path:
     """Write a picture (PNG) of strands, framed tightly on the knot that they form.
 
@@ -66,13 +67,14 @@ def render(
         out of the frame, 0.84 when all of them is in it
     fade : share of the frame's width over which strands fade away toward its borders
     marks : names and arrows at the ends of strands
+    bar : whether strain colours are explained by a colour bar
 
     Returns
     -------
     The path of the file.
     """
     options: dict[str, Any] = {"values": values, "size": size, "direction": direction}
-    image = picture(strands, closed, radius, fill=fill, fade=fade, marks=marks, **options)
+    image = picture(strands, closed, radius, fill=fill, fade=fade, marks=marks, bar=bar, **options)
     path = Path(path)
     pixels = np.round(255.0 * image).astype(np.uint8)
     try:
@@ -117,6 +119,7 @@ def picture(
     fill: float | None = None,
     fade: float = 0.0,
     marks: Sequence[Mark] = (),
+    bar: bool = True,
 ) -> Floats:
     """The picture that `render` writes, as an array (height, width, 3) of sRGB from 0 to 1."""
     nodes, loops = _checked(strands, closed, radius, values, size)
@@ -136,7 +139,7 @@ def picture(
     image = _rasterised(meshes, colours, view)
     if fade > 0:
         image = _faded(image, fade)
-    return draw_over(image, view, nodes, 1.0, marks, bar=values is not None)
+    return draw_over(image, view, nodes, 1.0, marks, bar=bar and values is not None)
 
 
 def _checked(
