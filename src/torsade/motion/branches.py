@@ -85,8 +85,8 @@ def follow(
     shape: Shape,
     path: Path,
     *,
-    first: float = 0.2,
-    largest: float = 0.5,
+    first: float = 0.4,
+    largest: float = 0.8,
     most: int = 500,
     tangent: Tangent | None = None,
     p: float = 0.0,
@@ -122,9 +122,9 @@ def follow(
 
 
 def fold(chain: Chain, path: Path, before: Point, after: Point) -> Point:
-    """The last point before the branch turns back between two points, in controls to a millionth."""
+    """The last point before the branch turns back between two points; controls are then off by 1e-6 of theirs."""
     now, length = before, 0.5 * _distance(chain, path, before, after)
-    while length > 1e-3:
+    while length > 3e-4:
         found = _correct(chain, path, now, now.tangent, length)
         if found is None or found[0].tangent.p <= 0.0:
             length *= 0.5
