@@ -80,6 +80,7 @@ def test_limit_curvatures_and_their_errors() -> None:
         (1.0, 0.0, "give a distance from 0 to less than its length"),
         (-0.1, 0.0, "give a distance from 0 to less than its length"),
         (float("nan"), 0.0, "give a distance from 0 to less than its length"),
+        (0.5, float("inf"), "give a finite angle"),
         (0.5, 9.0, "there it snaps at"),
         (0.3, -1e9, "there it snaps at -"),
     ],

@@ -28,7 +28,7 @@ SMALLEST_STEP = 1e-6
 MOST_CORRECTIONS = 8
 
 
-class _Lost(Exception):
+class _LostError(Exception):
     """A branch could not be followed."""
 
 
@@ -122,7 +122,7 @@ def follow(
 
 
 def fold(chain: Chain, path: Path, before: Point, after: Point) -> Point:
-    """The last point before the branch turns back between two points; controls are then off by 1e-6 of theirs."""
+    """The last point before the branch turns back between two points, in controls to 1e-6 of their size."""
     now, length = before, 0.5 * _distance(chain, path, before, after)
     while length > 3e-4:
         found = _correct(chain, path, now, now.tangent, length)
@@ -172,7 +172,7 @@ def bifurcation(chain: Chain, path: Path, before: Point, after: Point) -> tuple[
         near = before.shape if share < 0.5 else after.shape
         found = newton(chain, near, path.at(p), still=modes)
         if found is None:
-            raise _Lost
+            raise _LostError
         return found
 
     def critical(p: float) -> float:
@@ -183,7 +183,7 @@ def bifurcation(chain: Chain, path: Path, before: Point, after: Point) -> tuple[
             return None
         p = float(brentq(critical, before.p, after.p, xtol=1e-13, rtol=1e-12))
         shape, system = at(p)
-    except _Lost:
+    except _LostError:
         return None
     return before._replace(p=p, shape=shape), lowest(chain, system, number)[1][first]
 

@@ -34,7 +34,7 @@ STRAIGHT = 1e-9
 """End shortening, in units of L, below which a fiber is as good as straight: kappa L is then 2e-4."""
 
 NEAREST = 1e-7
-"""Least end distance, in units of L: nothing would keep an arch whose ends coincide from turning about them."""
+"""Least end distance, in units of L: an arch whose ends coincide would be free to turn about them."""
 
 FEWEST_EDGES = 4
 
@@ -142,6 +142,8 @@ def bent(fiber: Fiber, end_distance: float, total_twist: float = 0.0, near: Bent
             f"ends {end_distance:g} m apart are not those of a bent fiber of length {fiber.length:g} m; give "
             "a distance from 0 to less than its length."
         )
+    if not math.isfinite(total_twist):
+        raise TorsadeError(f"a total twist of {total_twist:g} rad is none; give a finite angle.")
     d = max(d, NEAREST)
     problem = _device(fiber.edges, fiber.C / fiber.B)
     if near is None:

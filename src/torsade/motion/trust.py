@@ -22,18 +22,18 @@ from torsade.motion.chain import Chain, Controls, Shape, System
 __all__ = ["imbalance", "minimise", "newton", "settled", "step"]
 
 TOLERANCE, ROUND_OFF = 1e-10, 1e-7
-"""Out-of-balance force, in units of those that act, at which a shape is at equilibrium: below the first, or below
-the second when it falls no further."""
+"""Out-of-balance force, in units of those that act, at which a shape is at equilibrium: below the first, or
+below the second when it falls no further."""
 
 GAPS = 1e3
-"""How much more exact gaps are, in units of L: a nearly straight fiber is shorter by the square of its slope."""
+"""How much more exact gaps are, in units of L: ends near a fiber's length apart say its slope squared."""
 
 LARGEST_RADIUS = 1.0
 """Longest step, as the root mean square of the angle that edges turn by [rad]."""
 
 
 def imbalance(chain: Chain, shape: Shape, controls: Controls, system: System) -> float:
-    """Norm of what is out of balance: forces in units of those that act or B/L^2, gaps in units of L or radians."""
+    """What is out of balance: forces in units of those that act and B/L^2, gaps in units of L and radians."""
     L = chain.twisted_length
     k = len(chain.weight)
     acting = float(np.abs(shape.reaction).max(initial=0.0)) + float(np.abs(controls.load).max(initial=0.0))

@@ -81,8 +81,8 @@ class BendTwist(Still):
             )
         if self.end_distance > self.length:
             raise TorsadeError(
-                f"end_distance {self.end_distance:g} m is more than the fiber's length, {self.length:g} m, and "
-                "it does not stretch; give a smaller distance"
+                f"end_distance {self.end_distance:g} m is more than the fiber's length, {self.length:g} m, "
+                "and it does not stretch; give a smaller distance"
             )
         return self
 
