@@ -48,6 +48,7 @@ SCRIPTS = (
     "variants",
     "chapter4",
     "tails",
+    "torque_writhe",
     "tightening",
 )
 
