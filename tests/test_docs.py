@@ -126,6 +126,7 @@ def test_a_command_shown_is_a_valid_specification(line: str) -> None:
         ("knots",),
         ("run", "prison-escape"),
         ("run", "tighten"),
+        ("run", "bend-twist"),
     ],
 )
 def test_help_comes(words: tuple[str, ...]) -> None:
