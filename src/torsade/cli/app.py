@@ -119,7 +119,7 @@ def build(arguments: list[str]) -> App:
         from torsade.protocols.files import PROTOCOLS
 
         for name, spec in PROTOCOLS.items():
-            example = f"Example: torsade run {name} {EXAMPLES[name]}"
+            example = f"Example: torsade run {name} {EXAMPLES[name]}" if name in EXAMPLES else ""
             run.command(
                 _protocol_command(spec), name=name, help=_about(spec), help_epilogue=example, version_flags=[]
             )
