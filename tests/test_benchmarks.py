@@ -49,6 +49,7 @@ SCRIPTS = (
     "chapter4",
     "statics",
     "tails",
+    "torque_writhe",
     "tightening",
 )
 

@@ -57,6 +57,8 @@ def test_commands_are_found() -> None:
         "tight",
         "knots",
         "figure",
+        "trials",
+        "material",
     }
     assert len(commands()) >= 5
 
@@ -79,6 +81,24 @@ def test_a_figure_shown_is_made(line: str, tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     folder = quick[quick.index("--out") + 1] if "--out" in quick else "figures"
     assert (tmp_path / folder / f"figure-{quick[2]}.png").stat().st_size > 10_000
+
+
+LABORATORY = {
+    "trials.csv": "lengths_mm,twist_deg,speed_mm_per_s\n90 30 120,0,3\n120 120,300,3\n",
+    "masses.csv": "mass_g,length_mm\n32,150\n15,220\n",
+    "weights.csv": "mass_g,length_mm\n0.55,240\n0.56,240\n",
+}
+"""What the files of the commands shown may hold."""
+
+
+@pytest.mark.parametrize("line", [line for line in commands() if line.split()[1] in ("trials", "material")])
+def test_measurements_shown_are_read(line: str, tmp_path: Path) -> None:
+    for name, text in LABORATORY.items():
+        (tmp_path / name).write_text(text)
+    done = subprocess.run(
+        [sys.executable, "-m", *shlex.split(line)], capture_output=True, text=True, check=False, cwd=tmp_path
+    )
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.parametrize("line", [line for line in commands() if line.split()[1] == "convert"])
@@ -124,6 +144,8 @@ def test_a_command_shown_is_a_valid_specification(line: str) -> None:
         ("convert",),
         ("tight",),
         ("knots",),
+        ("trials",),
+        ("material",),
         ("run", "prison-escape"),
         ("run", "tighten"),
         ("run", "bend-twist"),

@@ -35,6 +35,7 @@ def refusal(*arguments: str, cwd: Path | None = None) -> str:
 
 
 BEND = ("run", "prison-escape")
+MOVE = ("run", "reidemeister", "--move")
 ARCH = ("run", "bend-twist")
 
 
@@ -88,6 +89,11 @@ ARCH = ("run", "bend-twist")
         (("run", "tighten", "--knot", "reef"), "give torsade run prison-escape --knot reef"),
         ((*BEND, "--knot", "overhand"), "give torsade run tighten --knot overhand"),
         (("run", "reef.toml"), "give a file with --spec reef.toml"),
+        (("run", "reidemeister"), "move is missing; give a Reidemeister move to make: R1 (a loop)"),
+        ((*MOVE, "R4"), "move is 'R4'; choose one of R1, R2, R3"),
+        ((*MOVE, "R1", "--force", "1 N"), "there is no option --force; leave it out"),
+        ((*MOVE, "R1", "--length", "1 mm"), "give a length of at least 40 radii, 8 mm"),
+        (("run", "tighten", "--knot", "overhand", "--until-still", "1 um"), "is a length, not a velocity"),
         (("tighten",), "give torsade run tighten"),
         (("dmeo",), "did you mean 'demo'?"),
         (("--hlep",), "did you mean '--help'?"),

@@ -132,7 +132,19 @@ class TestAnalysis:
     def test_curvature_is_the_elastica_s(self, tmp_path: Path) -> None:
         found = analyse(trials(tmp_path, self.TEXT).trials, ROD, 1.9e7)
         assert found.each[0].kappa == pytest.approx(elastica(0.24, 0.176).kappa_max)
-        assert [b.planar for b in found.each] == [False] * 4 + [True]
+        assert not any(b.planar for b in found.each)
+
+    def test_curvature_of_twisted_rods_is_that_of_the_twist_device(self, tmp_path: Path) -> None:
+        """Solutions of the boundary-value problem at 175.95 mm, twisted by 0, 180 and 270 degrees."""
+        text = "pieces,twist_deg,end_distance_mm\n" + "".join(f"2,{d},175.95\n" for d in (0, 180, -270))
+        found = analyse(trials(tmp_path, text).trials, ROD, 1.9e7)
+        known = (14.28572, 14.70785, 15.38352)
+        assert [b.kappa for b in found.each] == pytest.approx(known, rel=1e-3)
+
+    def test_straight_twisted_rods_have_no_curvature(self, tmp_path: Path) -> None:
+        found = analyse(trials(tmp_path, "pieces,twist_deg,end_distance_mm\n2,350,240\n").trials, ROD, 1.9e7)
+        assert found.each[0].kappa == 0
+        assert found.each[0].li == math.inf
 
     def test_rods_on_both_sides_of_the_threshold(self, tmp_path: Path) -> None:
         found = analyse(trials(tmp_path, self.TEXT).trials, ROD, 1.9e7)

@@ -108,9 +108,9 @@ def build(arguments: list[str]) -> App:
     app.command(_figure, name="figure", help_epilogue=FIGURE_EXAMPLES, version_flags=[])
     run = App(
         name="run",
-        help="Run an experiment: prison-escape (pull a bend), tighten (pull a knot in one strand), reidemeister "
-        "(make a Reidemeister move), bend-twist (bend a twisted fiber), snap-twist (break a twisted rod), "
-        "snap-quench (break a rod at speed) or pendulum (a mass that turns on a rod).",
+        help="Run an experiment: prison-escape (pull a bend), tighten (pull a knot in one strand), "
+        "reidemeister (make a Reidemeister move), bend-twist (bend a twisted fiber), snap-twist (break a "
+        "twisted rod), snap-quench (break a rod at speed) or pendulum (a mass that turns on a rod).",
         help_epilogue="See the options with: torsade run prison-escape --help",
         version_flags=[],
     )
@@ -119,7 +119,7 @@ def build(arguments: list[str]) -> App:
         from torsade.protocols.files import PROTOCOLS
 
         for name, spec in PROTOCOLS.items():
-            example = f"Example: torsade run {name} {EXAMPLES[name]}"
+            example = f"Example: torsade run {name} {EXAMPLES[name]}" if name in EXAMPLES else ""
             run.command(
                 _protocol_command(spec), name=name, help=_about(spec), help_epilogue=example, version_flags=[]
             )

@@ -246,7 +246,10 @@ def _rows(file: str, read: Trials, found: Analysis) -> Iterator[tuple[str, str]]
         yield "stress at breaking", _plus_minus(found.stress, 1e-6, "MPa")
     planar = sum(b.planar for b in found.each)
     if planar:
-        yield "curvature", f"planar in {counted(planar, 'twisted rod')}: up to 8 % too low at 270 degrees"
+        yield (
+            "curvature",
+            f"of the planar shape in {counted(planar, 'twisted rod')} that no other was found for",
+        )
     at = found.threshold
     yield "binary threshold", f"{math.degrees(at.twist):.0f} degrees at {at.kappa:.2f} 1/m, Li {at.li:.3f}"
     for name, part in (("above", found.beyond), ("below", found.before)):

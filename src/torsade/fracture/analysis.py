@@ -29,8 +29,13 @@ from torsade.fracture.theory.bending_wave import AMPLIFICATION
 from torsade.fracture.theory.binary import Threshold, li, li_threshold, threshold
 from torsade.fracture.theory.elastica import curvature_at
 from torsade.fracture.trials import Trial
+from torsade.motion.equilibrium import bent
+from torsade.motion.supports import Fiber
 
 __all__ = ["Analysis", "AtSpeed", "Broken", "Fits", "analyse"]
+
+EDGES = 120
+"""Of a twisted rod whose shape is computed from the distance of its ends."""
 
 
 @dataclass(frozen=True)
@@ -41,7 +46,7 @@ class Broken:
     ----------
     trial : as it was read
     kappa, kappa_error : limit curvature, and its error from that of the end-to-end distance [1/m]
-    planar : whether that curvature is of a planar shape although the rod was twisted
+    planar : whether that curvature is of a planar shape although the rod was twisted, for want of another
     li : weight of twist over bending (3.3)
     stress : of the criterion, when it broke [Pa]
     fragment : lambda* (3.3) [m]
@@ -169,8 +174,7 @@ def analyse(
 def _broken(trial: Trial, rod: Rod, criterion: str) -> Broken:
     kappa, error, planar = trial.limit_curvature, 0.0, False
     if kappa is None and trial.end_distance is not None:
-        kappa, error = curvature_at(rod.L, trial.end_distance, trial.end_distance_error)
-        planar = trial.twist != 0
+        kappa, error, planar = _curvature(trial.end_distance, trial.end_distance_error, trial.twist, rod)
     sigma = None
     if kappa is not None:
         sigma = float(stress(kappa, trial.twist / rod.L, rod.E, rod.mu, rod.h, criterion))
@@ -183,6 +187,23 @@ def _broken(trial: Trial, rod: Rod, criterion: str) -> Broken:
         stress=sigma,
         fragment=smallest_fragment(trial.pieces, trial.smallest, rod.L),
     )
+
+
+def _curvature(distance: float, error: float, twist: float, rod: Rod) -> tuple[float, float, bool]:
+    """Largest curvature from the end-to-end distance [m], its error, and whether it is of a planar shape.
+
+    Without twist the elastica in closed form. With it the equilibrium in the twist device, whose error is
+    smaller than 1e-4; where there is none, as with straight rods, the elastica again.
+    """
+    planar, spread = curvature_at(rod.L, distance, error)
+    if twist == 0:
+        return planar, spread, False
+    fiber = Fiber(rod.L, EDGES, rod.B, rod.C)
+    try:
+        kappa = bent(fiber, distance, twist).kappa_max
+    except TorsadeError:
+        return planar, spread, True
+    return kappa, spread * kappa / planar if planar else spread, False
 
 
 def _binary(group: Sequence[Broken]) -> Share | None:

@@ -3,7 +3,8 @@
 A hinge breaks in the step in which its stress comes to its strength: its node is split in two, each with its
 half of the mass and the velocity of the whole. Every piece breaks at most once in a step, where stress over
 strength is largest. Once the rod is broken, no break is nearer than the least fragment length lambda to an
-end of its piece (thesis 3.3). Both sides of every break are followed; pieces that no end holds go on, or stop (thesis Fig 3-1C).
+end of its piece (thesis 3.3). Both sides of every break are followed; pieces that no end holds go on, or stop
+(thesis Fig 3-1C).
 """
 
 from __future__ import annotations
@@ -158,7 +159,7 @@ class Cascade:
         return self.motion.assembly.fiber_length.copy()
 
     def advance(self, until: float, max_steps: int = 2**62) -> Outcome:
-        """Advance to the first step at the time until [s] or after, in at most max_steps steps; break on the way.
+        """Advance to the first step at or after the time until [s], in at most max_steps; break on the way.
 
         Raises
         ------

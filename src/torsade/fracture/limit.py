@@ -68,8 +68,8 @@ def breaking_shape(
         except TorsadeError:
             raise TorsadeError(
                 f"the rod would break at a curvature of {wanted:.4g} 1/m, and one of length "
-                f"{1e3 * fiber.length:.4g} mm does not bend so far at this twist; give a smaller sigma_c or a "
-                "longer rod"
+                f"{1e3 * fiber.length:.4g} mm does not bend so far at this twist; give a smaller sigma_c "
+                "or a longer rod"
             ) from None
         share = shape.kappa[1:-1] / bears
         weakest = int(np.argmax(share))

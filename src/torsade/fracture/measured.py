@@ -118,7 +118,8 @@ def twist_damping(
     The rod turns as theta = Theta x/L, and along all of it the torque 4 b rho I theta_t resists (3.1b). Its
     power is 4 b rho I (L/3) Theta_t^2, so that amplitudes decay at the rate 2 b rho I (L/3)/I_0. The thesis
     counts the drag of the last piece of its discretised rod alone, whose length it takes to be the height h_0
-    of the mass, and so has h_0 in place of L/3: with `mass_height` that is what is given, L/(3 h_0) times it.
+    of the mass, and so has h_0 in place of L/3: with `mass_height` that is what is given, L/(3 h_0) times as
+    much. A rod that goes through the mass turns with it there, and L/3 + h_0 would take the place of L/3.
 
     Either way b holds only if the rod, and not air or grips, damps the pendulum.
 

@@ -1,8 +1,8 @@
 """Ends held in direction, exactly: a grip is an edge before an end, without rest length, that does not move.
 
 Half of the neighbouring edge bends and twists against the grip, so the end itself, not the middle of its
-edge, has the grip's direction and angle; what depends on a clamp converges with the square of the edge length.
-`torsade.motion.supports` does the same in equilibria.
+edge, has the grip's direction and angle; what depends on a clamp converges with the square of the edge
+length. `torsade.motion.supports` does the same in equilibria.
 """
 
 from __future__ import annotations

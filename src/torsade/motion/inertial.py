@@ -202,7 +202,7 @@ class Inertial:
         return Energies(*(float(e) for e in out))
 
     def split(self, hinge: int) -> None:
-        """Cut a fiber at a hinge: both sides keep their velocities, each node has the mass of its half edge."""
+        """Cut a fiber at a hinge: both sides keep their velocities; each node has its half edge's mass."""
         node = int(self.assembly.hinges[hinge, 2])
         density = self.inertia.mass[node] / self.assembly.node_length[node]
 

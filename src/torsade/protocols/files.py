@@ -80,7 +80,8 @@ def read_fields(path: str | Path) -> dict[str, Any]:
     protocol = fields.get("protocol")
     if protocol is None:
         raise TorsadeError(
-            f'{name} names no protocol; add a line such as protocol = "prison-escape"; there are {", ".join(PROTOCOLS)}'
+            f'{name} names no protocol; add a line such as protocol = "prison-escape"; there are '
+            f"{', '.join(PROTOCOLS)}"
         )
     if not isinstance(protocol, str) or protocol not in PROTOCOLS:
         near = difflib.get_close_matches(str(protocol), PROTOCOLS, n=1)

@@ -28,8 +28,8 @@ SWINGS = 10
 class Pendulum(Rod):
     """Hang a cylinder on a rod, turn it, let it go, and find frequency, decay, mu and b from its swings.
 
-    The upper end is clamped. Damping acts along the rod, and along the height of the cylinder if one is given,
-    as if the rod went through it.
+    The upper end is clamped. Damping acts along the rod, and along the height of the cylinder if one is
+    given, as if the rod went through it.
     """
 
     hints: ClassVar[Mapping[str, str]] = {
@@ -68,8 +68,8 @@ class Pendulum(Rod):
         rod = self.fiber_material.rho * self.section.J * self.length
         if self.moment < 10 * rod:
             raise TorsadeError(
-                f"the cylinder's moment of inertia is {self.moment:.3g} kg m^2, less than ten times the rod's "
-                f"{rod:.3g}; give more mass or mass_radius"
+                f"the cylinder's moment of inertia is {self.moment:.3g} kg m^2, less than ten times the "
+                f"rod's {rod:.3g}; give more mass or mass_radius"
             )
         return self
 

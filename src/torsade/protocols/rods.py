@@ -74,8 +74,8 @@ class Rod(Driven):
         """Refuse a rod that is thicker than rod theory allows."""
         if self.length < 20 * self.h:
             raise TorsadeError(
-                f"a rod of length {1e3 * self.length:.4g} mm and radius {1e3 * self.h:.4g} mm is too thick to "
-                "be a rod; give a length of at least 20 radii"
+                f"a rod of length {1e3 * self.length:.4g} mm and radius {1e3 * self.h:.4g} mm is too thick "
+                "to be a rod; give a length of at least 20 radii"
             )
 
     def check_step(self, steps_of: float) -> None:
@@ -177,7 +177,7 @@ class Breakable(Rod):
     def cascade(
         self, assembly: Assembly, state: State, boundary: Boundary, followed: float = math.inf
     ) -> Cascade:
-        """The rod in this state, held so, with all that makes it break; followed [s] after its first break."""
+        """The rod in this state, held so, and what makes it break; followed [s] after its first break."""
         from torsade.fracture.cascade import Cascade, Fracture
         from torsade.motion.inertial import Inertial
 

@@ -1,4 +1,4 @@
-"""Snap-quench (thesis 3.7): the ends of a rod are driven towards each other until it breaks, while it moves."""
+"""Snap-quench (thesis 3.7): the ends of a rod are driven towards each other until it breaks on the way."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 __all__ = ["SnapQuench"]
 
 MEASURED_AT, SHORTEST = 0.003, 0.01
-"""Speed [m/s] at which the thesis measured its least fragment length, and the shortest at any speed [m] (3.3)."""
+"""Speed [m/s] at which the thesis has its least fragment length, and the shortest at any speed [m] (3.3)."""
 
 LEAST_SHORTENING = 1e-3
-"""Share of the length by which the ends are nearer at the start: a straight rod would not know where to go."""
+"""Least share of the length by which the ends have come nearer at first: a straight rod has no way to go."""
 
 
 class SnapQuench(Breakable):
@@ -39,7 +39,7 @@ class SnapQuench(Breakable):
         "v": "there is no field 'v'; did you mean 'speed'?",
         "velocity": "there is no field 'velocity'; did you mean 'speed'?",
         "twist": "snap-quench bends a rod without twist, so there is no field 'twist'; see snap-twist",
-        "duration": "there is no field 'duration'; give 'approach', and 'after' for the time after the first break",
+        "duration": "there is no field 'duration'; give 'approach' and 'after', before and after the break",
     }
 
     protocol: Literal["snap-quench"] = "snap-quench"
@@ -53,13 +53,13 @@ class SnapQuench(Breakable):
     )
     fragment_law: Literal["constant", "quarter-power"] = Field(
         "constant",
-        description="Whether the least length of pieces is min_fragment at every speed, or, as measured in the "
-        "thesis, min_fragment at 3 mm/s, falling as speed^(-1/4) to no less than 10 mm.",
+        description="Whether the least length of pieces is min_fragment at every speed, or, as the "
+        "thesis measured, min_fragment at 3 mm/s, falling as speed^(-1/4) to no less than 10 mm.",
     )
     after: Annotated[Time, Positive] | None = Field(
         None,
-        description="How long to follow the pieces; by default until the wave from a break in the middle reaches "
-        "the ends, 2.06 ms.",
+        description="How long to follow the pieces; by default until the wave from a break in the middle "
+        "reaches the ends, 2.06 ms.",
         examples=["2 ms"],
     )
 
@@ -67,8 +67,8 @@ class SnapQuench(Breakable):
     def _goes_on_long_enough(self) -> SnapQuench:
         if self.approach * self.speed > self.length:
             raise TorsadeError(
-                f"an approach of {self.approach:.4g} s at {1e3 * self.speed:.4g} mm/s is longer than the rod; "
-                "give less"
+                f"an approach of {self.approach:.4g} s at {1e3 * self.speed:.4g} mm/s is longer than the "
+                "rod; give less"
             )
         return self
 

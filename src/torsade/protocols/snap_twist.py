@@ -1,4 +1,4 @@
-"""Snap-twist (thesis 3.4): a twisted rod is bent slowly until it breaks, and breaks on in the waves of that."""
+"""Snap-twist (thesis 3.4): a twisted rod is bent slowly until it breaks, and breaks on in its waves."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ __all__ = ["SnapTwist"]
 class SnapTwist(Breakable):
     """Twist a straight rod, bend it slowly by its ends until it breaks, and follow the fracture cascade.
 
-    The ends turn freely about one axis while the rod is bent and hold still after the first break. Time begins
-    with that break. Without disorder it is in the middle.
+    The ends turn freely about one axis while the rod is bent and hold still after the first break. Time
+    begins with that break. Without disorder it is in the middle.
     """
 
     protocol: Literal["snap-twist"] = "snap-twist"
@@ -30,8 +30,8 @@ class SnapTwist(Breakable):
     )
     duration: Annotated[Time, Positive] | None = Field(
         None,
-        description="How long to follow the pieces; by default until the wave from a break in the middle reaches "
-        "the ends, 2.06 ms.",
+        description="How long to follow the pieces; by default until the wave from a break in the middle "
+        "reaches the ends, 2.06 ms.",
         examples=["2 ms"],
     )
 

@@ -1,15 +1,16 @@
 """Inextensible fibers: impulses along the edges that keep their lengths, by one tridiagonal solve per fiber.
 
-An edge e from node i to node j with tangent t_e pulls its nodes together by an impulse p_e [N s]: node i moves
-by +w_i t_e p_e, node j by -w_j t_e p_e, with w the inverse masses (0 where a node is held). What all edges
-lose in length by all impulses is a matrix, mass-weighted and symmetric,
+An edge e from node i to node j with tangent t_e pulls its nodes together by an impulse p_e [N s]: node i
+moves by +w_i t_e p_e, node j by -w_j t_e p_e, with w the inverse masses (0 where a node is held). What all
+edges lose in length by all impulses is a matrix, mass-weighted and symmetric,
 
     A_ee = w_i + w_j,     A_e,e+1 = -w_j t_e . t_e+1     (j the node between),
 
 tridiagonal along an open fiber. It is factorised once per state, as L D L^T. Velocities are projected by one
-solve with it. Positions ask for Newton's method, since lengths are not linear in them: with the impulses along
-the tangents at the start of the step, as time-reversible schemes want them (RATTLE, Andersen 1983), the same
-factor serves all iterations, and the error falls by the share of an edge that the nodes move in the step.
+solve with it. Positions ask for Newton's method, since lengths are not linear in them: with the impulses
+along the tangents at the start of the step, as time-reversible schemes want them (RATTLE, Andersen 1983), the
+same factor serves all iterations, and the error falls by the share of an edge that the nodes move in the
+step.
 
 An edge between two held nodes keeps what length it has. Where edges pull against each other in vain, as
 those of a straight fiber between held ends do, the last of them is left out.

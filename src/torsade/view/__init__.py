@@ -11,12 +11,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from torsade.view.cascade import draw_pieces, plot_cascade
+    from torsade.view.cascade import along_rod, draw_pieces, pieces_at, plot_cascade
     from torsade.view.plots import plot_move, plot_separation, plot_swing, plot_tightening
     from torsade.view.scene import render, render_result
 
 __all__ = [
+    "along_rod",
     "draw_pieces",
+    "pieces_at",
     "plot_cascade",
     "plot_move",
     "plot_separation",
@@ -27,6 +29,8 @@ __all__ = [
 ]
 
 _HOMES = {
+    "along_rod": "torsade.view.cascade",
+    "pieces_at": "torsade.view.cascade",
     "draw_pieces": "torsade.view.cascade",
     "plot_cascade": "torsade.view.cascade",
     "plot_move": "torsade.view.plots",

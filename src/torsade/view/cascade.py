@@ -54,7 +54,8 @@ def along_rod(dataset: xarray.Dataset, name: str) -> tuple[Floats, Floats]:
 
     Returns
     -------
-    Places [m], shape (n_nodes,), and values, shape (n_frames, n_nodes): the larger one of both sides of a break.
+    Places [m], shape (n_nodes,), and values, shape (n_frames, n_nodes): the larger one of both sides of a
+    break.
     """
     _require(dataset, name)
     spec = json.loads(dataset.attrs["spec"])
@@ -152,8 +153,8 @@ def _require(dataset: xarray.Dataset, name: str) -> None:
     missing = [key for key in ("piece_start", name) if key not in dataset]
     if missing:
         raise TorsadeError(
-            f"this result is not of a rod that breaks: it lacks {', '.join(missing)}; give one of snap-twist or "
-            "snap-quench"
+            f"this result is not of a rod that breaks: it lacks {', '.join(missing)}; give one of snap-twist "
+            "or snap-quench"
         )
 
 

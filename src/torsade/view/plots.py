@@ -107,7 +107,8 @@ def plot_swing(dataset: xarray.Dataset, path: str | Path) -> Path:
 
     Parameters
     ----------
-    dataset : coordinate `time` [s], variables `angle (time)` [rad], `energy_spin` and `energy_twist (time)` [J]
+    dataset : coordinate `time` [s], variables `angle (time)` [rad], `energy_spin (time)` and
+        `energy_twist (time)` [J]
     path : the file to write; its ending chooses the format (png, pdf, svg)
     """
     _require(dataset, "angle", "energy_spin", "energy_twist")
