@@ -47,6 +47,7 @@ SCRIPTS = (
     "building",
     "variants",
     "chapter4",
+    "statics",
     "tails",
     "torque_writhe",
     "tightening",

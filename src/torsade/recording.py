@@ -73,7 +73,7 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
 }
 """Dimensions, SI unit and meaning of every recorded variable."""
 
-FRAMES = (
+STRAINED = (
     "position",
     "log_strain",
     "strain_stretch",
@@ -82,10 +82,10 @@ FRAMES = (
     "velocity",
     "self_torque",
 )
-SINGLE_PRECISION = (*FRAMES, "twist_density", "stress")
+SINGLE_PRECISION = (*STRAINED, "twist_density", "stress")
 
-BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in FRAMES)
-"""What a frame takes at most for every node, and the edge that comes with it."""
+BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in STRAINED)
+"""What a frame takes for every node, and the edge that comes with it: in no protocol more."""
 
 SAMPLE = "sample_"
 """Beginning of the names of samples."""

@@ -57,6 +57,8 @@ COMMON = (
     "dissipation",
     "position",
     "log_strain",
+    "velocity",
+    "self_torque",
     "strain_stretch",
     "strain_bend",
     "strain_twist",
