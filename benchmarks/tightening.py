@@ -30,8 +30,14 @@ KNOT_NUMBERS = (
     "twist_share",
     "twist_adds",
 )
+SMALL = ("total_twist_rad", "twist_share", "twist_adds")
+"""Numbers near zero, where a change in per cent says little: shown as they become."""
+
 MOVE_NUMBERS = ("start_L_per_B", "top_L_per_B", "end_L_per_B")
 LENGTHS = (50, 70, 100, 140, 200)  # [radii]
+
+NOTHING = 1e-12
+"""Energies below this, of strands that lie apart, are left out."""
 
 FINER: Mapping[str, Mapping[str, float]] = {
     "nodes doubled": {"spacing": 0.5},
@@ -107,19 +113,20 @@ def changes(rows: Sequence[dict[str, Any]], names: Sequence[str], ways: Sequence
     body = []
     for row in rows:
         plain = row["ways"]["plain"]
+        label = row["run"].removeprefix("tighten ").removeprefix("reidemeister ")
         for name in names:
+            if abs(plain[name]) < NOTHING:
+                continue
             others = [row["ways"][way][name] if way in row["ways"] else None for way in ways]
-            body.append([row["run"], name, f"{plain[name]:.5g}", *(_change(plain[name], x) for x in others)])
+            body.append([label, name, f"{plain[name]:.4g}", *(_change(name, plain[name], x) for x in others)])
     return common.table(("run", "number", "value", *ways), body)
 
 
-def _change(before: float, after: float | None) -> str:
-    """A change in per cent, or both numbers where the first is nearly nothing."""
+def _change(name: str, before: float, after: float | None) -> str:
+    """A change in per cent, or of `SMALL` what the number becomes."""
     if after is None:
         return "-"
-    if abs(before) < 1e-6 * max(1.0, abs(after)):
-        return f"{after:.2g}"
-    return f"{100 * (after / before - 1):+.2f} %"
+    return f"{after:.4g}" if name in SMALL else f"{100 * (after / before - 1):+.2f} %"
 
 
 def lengths() -> list[dict[str, Any]]:

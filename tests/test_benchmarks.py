@@ -47,7 +47,9 @@ SCRIPTS = (
     "building",
     "variants",
     "chapter4",
+    "statics",
     "tails",
+    "torque_writhe",
     "tightening",
 )
 

@@ -148,6 +148,7 @@ def test_a_command_shown_is_a_valid_specification(line: str) -> None:
         ("material",),
         ("run", "prison-escape"),
         ("run", "tighten"),
+        ("run", "bend-twist"),
     ],
 )
 def test_help_comes(words: tuple[str, ...]) -> None:

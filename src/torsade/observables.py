@@ -26,6 +26,7 @@ __all__ = [
     "h_kappa",
     "hinge_curvature",
     "hinge_twist",
+    "integral",
     "log_strain",
     "pull_speed",
     "surface_strain",
@@ -117,10 +118,9 @@ def surface_strain(assembly: Assembly, state: State, radius: float) -> SurfaceSt
     bend[node] = h_kappa(assembly, state, radius)
     twisted[node] = radius * np.abs(hinge_twist(assembly, state)) / assembly.hinge_length / math.sqrt(2)
     extension = edge_lengths(assembly, state) / assembly.rest_length - 1
-    total, meeting = np.zeros_like(bend), np.zeros_like(bend)
-    np.add.at(total, assembly.edges.ravel(), np.repeat(extension, 2))
-    np.add.at(meeting, assembly.edges.ravel(), 1.0)
-    return SurfaceStrain(total / meeting, bend, twisted)
+    ends, nodes = assembly.edges.ravel(), len(bend)
+    total = np.bincount(ends, np.repeat(extension, 2), nodes)
+    return SurfaceStrain(total / np.bincount(ends, minlength=nodes), bend, twisted)
 
 
 def log_strain(assembly: Assembly, state: State, radius: float) -> Floats:
@@ -145,6 +145,18 @@ def pull_speed(time: ArrayLike, separation: ArrayLike) -> Floats:
     speed = np.full(len(t), np.nan)
     speed[1:] = np.diff(s) / np.diff(t)
     return speed
+
+
+def integral(time: ArrayLike, rate: ArrayLike) -> Floats:
+    """Integral of a rate since the first frame, by the trapezoidal rule, shape (n,).
+
+    Parameters
+    ----------
+    time : (n,) increasing [s]
+    rate : (n,) at these times [something/s]
+    """
+    t, r = np.asarray(time, np.float64), np.asarray(rate, np.float64)
+    return np.concatenate([[0.0], np.cumsum(0.5 * np.diff(t) * (r[1:] + r[:-1]))])
 
 
 class Friction(NamedTuple):

@@ -49,6 +49,10 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "dissipation": (("time",), "J", "energy lost to drag since the start"),
     "position": (("time", "node", "space"), "m", "node positions"),
     "log_strain": (("time", "node"), "", "log(1 + sqrt(eps:eps)) on the surface"),
+    "velocity": (("time", "node", "space"), "m/s", "node velocities; zero at the start"),
+    "self_torque": (("time", "edge"), "N", "torque by collision drag per rest length, without own spin"),
+    "rotation_rate": (("time",), "rad/s", "rate at which the knot turns about the pull"),
+    "rotation": (("time",), "rad", "by how much the knot has turned about the pull"),
     "strain_stretch": (("time", "node"), "", "stretch |x'| - 1"),
     "strain_bend": (("time", "node"), "", "strain of bending on the surface, h kappa"),
     "strain_twist": (("time", "node"), "", "strain of twist on the surface, h |theta'|/sqrt(2)"),
@@ -69,11 +73,19 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
 }
 """Dimensions, SI unit and meaning of every recorded variable."""
 
-STRAINED = ("position", "log_strain", "strain_stretch", "strain_bend", "strain_twist")
+STRAINED = (
+    "position",
+    "log_strain",
+    "strain_stretch",
+    "strain_bend",
+    "strain_twist",
+    "velocity",
+    "self_torque",
+)
 SINGLE_PRECISION = (*STRAINED, "twist_density", "stress")
 
 BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in STRAINED)
-"""What a frame takes for every node: the same, or nearly, in all protocols."""
+"""What a frame takes for every node, and the edge that comes with it: in no protocol more."""
 
 SAMPLE = "sample_"
 """Beginning of the names of samples."""

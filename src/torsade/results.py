@@ -1,10 +1,11 @@
 """Results: labelled arrays with what was asked and what came of it, in zarr folders that anyone can open.
 
 A result is an `xarray.Dataset` in SI units. Histories have the dimension `time`; `twist` also `fiber`.
-Frames are `position (time, node, space)` [m], `log_strain (time, node)` and its parts `strain_stretch`,
-`strain_bend` and `strain_twist`, stored in single precision. Samples, `sample_time (sample)` [s] and
-`sample_separation (sample)` [m], are finer in time and do not depend on frames: what a run concludes comes
-from them. `node_start (fiber_bound)` says where each fiber begins, `closed (fiber)` which are closed.
+Frames are `position` [m] and `velocity` [m/s] `(time, node, space)`, `log_strain (time, node)` and its parts
+`strain_stretch`, `strain_bend` and `strain_twist`, and `self_torque (time, edge)` [N], edges counted through
+all fibers, stored in single precision. Samples, `sample_time (sample)` [s] and `sample_separation (sample)`
+[m], are finer in time and do not depend on frames: what a run concludes comes from them. `node_start
+(fiber_bound)` says where each fiber begins, `closed (fiber)` which are closed.
 
 The attributes hold `protocol`, `spec` and `model` (JSON: what was asked, and the numbers that it meant),
 `knot` where there is one, `radius` [m], `versions`, `created`, `status`, `done` (frames), `sampled`, `steps`,

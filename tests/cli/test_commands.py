@@ -65,6 +65,21 @@ def test_json_is_alone_and_agrees_with_the_stored_result(tmp_path: Path) -> None
     assert report["steps"] == stored.dataset.attrs["steps"]
 
 
+def test_a_bent_fiber_in_numbers_and_pictures(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    arguments = ("run", "bend-twist", "--end-distance", "19 cm", "--twist", "270 deg")
+    done = shell(*arguments, "--json", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    numbers = json.loads(done.stdout)
+    assert numbers["kappa_max_per_m"] == pytest.approx(13.3755, rel=1e-4)
+    assert numbers["stable"] is True
+    done = shell(*arguments, "--end-distance-error", "1 mm", "--plot", "bent.svg", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    for words in ("240 mm, ends 190 mm apart", "grips turned by 272.55 deg", "13.375 1/m, between 13.23"):
+        assert words in done.stdout
+    assert (tmp_path / "bent.svg").stat().st_size > 1000
+
+
 def test_a_table_names_the_files(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     done = shell(*SHORT, "--out", "reef.zarr", "--plot", "reef.svg", cwd=tmp_path)

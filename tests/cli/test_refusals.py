@@ -35,6 +35,8 @@ def refusal(*arguments: str, cwd: Path | None = None) -> str:
 
 
 BEND = ("run", "prison-escape")
+MOVE = ("run", "reidemeister", "--move")
+ARCH = ("run", "bend-twist")
 
 
 @pytest.mark.parametrize(
@@ -75,11 +77,23 @@ BEND = ("run", "prison-escape")
         ((*BEND, "--centerline", "none.csv"), "there is no file 'none.csv'"),
         ((*BEND, "--spec", "none.toml"), "there is no file 'none.toml'"),
         (BEND, "nothing to pull is given"),
+        (ARCH, "end_distance is missing; give a distance"),
+        ((*ARCH, "--end-distance", "30 cm"), "more than the fiber's length, 0.24 m"),
+        ((*ARCH, "--end-distance", "24 cm"), "give a distance from 0 to less than its length"),
+        ((*ARCH, "--end-distance", "-1 cm"), "give a length of at least 0 m"),
+        ((*ARCH, "--end-distance", "19 cm", "--twist", "1e6 deg"), "there it snaps at"),
+        ((*ARCH, "--end-distance", "19 cm", "--twist", "270 dge"), "unknown unit 'dge'"),
+        ((*ARCH, "--end-distance", "19 cm", "--force", "1 N"), "give --end-distance"),
         (("run", "prison"), "did you mean 'prison-escape'?"),
         (("run", "tighten", "--knot", "trefoil"), "'trefoil' is a closed knot, and one strand"),
         (("run", "tighten", "--knot", "reef"), "give torsade run prison-escape --knot reef"),
         ((*BEND, "--knot", "overhand"), "give torsade run tighten --knot overhand"),
         (("run", "reef.toml"), "give a file with --spec reef.toml"),
+        (("run", "reidemeister"), "move is missing; give a Reidemeister move to make: R1 (a loop)"),
+        ((*MOVE, "R4"), "move is 'R4'; choose one of R1, R2, R3"),
+        ((*MOVE, "R1", "--force", "1 N"), "there is no option --force; leave it out"),
+        ((*MOVE, "R1", "--length", "1 mm"), "give a length of at least 40 radii, 8 mm"),
+        (("run", "tighten", "--knot", "overhand", "--until-still", "1 um"), "is a length, not a velocity"),
         (("tighten",), "give torsade run tighten"),
         (("dmeo",), "did you mean 'demo'?"),
         (("--hlep",), "did you mean '--help'?"),

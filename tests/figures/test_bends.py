@@ -9,11 +9,12 @@ import pytest
 import xarray
 
 from torsade.cli.figure import draw
-from torsade.figures import bends, figure, panels
+from torsade.figures import bends, figure, panels, twist_share
 from torsade.figures.base import Choice
 from torsade.figures.runs import results
 from torsade.knots import bend_diagram
 from torsade.protocols import PrisonEscape
+from torsade.protocols.base import Spec
 from torsade.topology import state
 
 QUICK = Choice(quick=True)
@@ -24,7 +25,7 @@ NUMBERS = ("4-1", "4-5", "4-6", "4-7", "4-8")
 def folder(tmp_path_factory):
     """A folder that holds all quick runs."""
     place = tmp_path_factory.mktemp("figures")
-    results(bends.specs(QUICK), place / "runs")
+    results({**bends.specs(QUICK), **twist_share.runs(QUICK)}, place / "runs")
     return place
 
 
@@ -33,7 +34,7 @@ def nothing_runs(monkeypatch):
     def refuse(self, **options):
         raise AssertionError(f"{self.knot} is run again")
 
-    monkeypatch.setattr(PrisonEscape, "run", refuse)
+    monkeypatch.setattr(Spec, "run", refuse)
 
 
 def test_every_bend_is_pulled_once_with_each_preset():

@@ -33,7 +33,7 @@ def test_solutions_with_equal_and_unequal_borders(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("shift", [-2.0, 0.0, 3.0])
 def test_inertia_counts_what_constraints_leave(seed: int, shift: float) -> None:
-    """Negative eigenvalues less one per constraint are those of the Hessian on the constraints' null space."""
+    """Negative eigenvalues, less one per constraint, are those of the Hessian where constraints are met."""
     rows, full, border, _ = bordered(seed)
     solver = Bordered(rows, border, np.zeros((K, K)), shift=shift)
     free = null_space(border.T)

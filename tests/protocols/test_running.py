@@ -49,7 +49,8 @@ def test_work_is_stored_or_dissipated(short: ts.Result) -> None:
 
 def test_the_report_has_the_promised_keys(short: ts.Result) -> None:
     report = PrisonEscape.report(short)
-    keys = "c_f pull_speed_m_per_s slipped_at_s times_s separation_m compression_N twist_rad steps wall_s"
+    keys = "c_f pull_speed_m_per_s slipped_at_s times_s separation_m compression_N twist_rad rotation_rad "
+    keys += "steps wall_s"
     assert set(keys.split()) <= report.keys()
     assert report["slipped_at_s"] is None
     assert np.shape(report["twist_rad"]) == (2, 9)

@@ -102,6 +102,7 @@ def _escape(report: dict[str, Any], held: int, duration: float) -> Iterator[tupl
     yield "compression", f"{report['compression_N'][held]:.0f} N {at}"
     twist = ", ".join(f"{'AB'[k]} {t[held]:+.2f} rad" for k, t in enumerate(report["twist_rad"]))
     yield "twist", f"{twist} {at}"
+    yield "turned about the pull", f"{report['rotation_rad'][held]:+.2f} rad {at}"
 
 
 def _tightened(report: dict[str, Any], awaited: bool) -> Iterator[tuple[str, str]]:

@@ -1,7 +1,8 @@
 """Figure 4-1: what tells knots apart in a run: the speed at which they give way, and what presses them.
 
 (A) Speed of the pulled end against time. (B) The ranking of all bends by topological friction c_f beside
-that by total compression force, the sum over all edges of the contact forces on them.
+that by total compression force, the sum over all edges of the contact forces on them. (C) Strain along tight
+knots in one strand, and how little of it is twist.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from torsade.figures import bends, panels
+from torsade.figures import bends, panels, twist_share
 from torsade.figures.base import Choice, Figure, Preset, Table
 from torsade.figures.ranking import agreement
 from torsade.view._extra import require
@@ -39,14 +40,20 @@ MEASURED = ("knot", "preset", "c_f", "compression_N", "pull_speed_m_per_s", "sli
 
 
 def runs(choice: Choice) -> Mapping[str, Spec]:
-    """All bends."""
-    return bends.specs(choice)
+    """All bends, and the two knots of panel C."""
+    return {**bends.specs(choice), **twist_share.runs(choice)}
 
 
 def measure(results: Mapping[str, Result], choice: Choice) -> Mapping[str, Table]:
-    """The bends, and how far the two rankings agree."""
+    """The bends, how far the two rankings agree, and the strain of tight knots."""
     table = bends.table(results, choice)
-    return {"": table.only(*MEASURED), "bends": table, "rankings": rankings(table, choice)}
+    return {
+        "": table.only(*MEASURED),
+        "bends": table,
+        "rankings": rankings(table, choice),
+        "twist": twist_share.table(results),
+        "twist-shares": twist_share.shares(results),
+    }
 
 
 def rankings(table: Table, choice: Choice) -> Table:
@@ -71,8 +78,9 @@ def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Cho
     """Write the picture."""
     n = len(choice.presets)
     with require("matplotlib").rc_context(panels.STYLE):
-        figure = panels.new_figure(7.2, 7.4)
-        grid = figure.subplots(2, n, height_ratios=(2.6, 4.4), squeeze=False)
+        figure = panels.new_figure(7.2, 9.3)
+        upper, lower = figure.subfigures(2, 1, height_ratios=(7.2, 2.1))
+        grid = upper.subplots(2, n, height_ratios=(2.6, 4.4), squeeze=False)
         seen = [_speed(axes, results, preset) for axes, preset in zip(grid[0], choice.presets, strict=True)]
         for axes in grid[0]:
             axes.set_ylim(0.8 * min(low for low, _ in seen), 1.6 * max(high for _, high in seen))
@@ -82,6 +90,9 @@ def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Cho
             draw_rankings(axes, tables["bends"], tables["rankings"], preset)
         panels.letter(grid[0][0], "A", -0.13)
         panels.letter(grid[1][0], "B", -0.13)
+        below = lower.subplots()
+        twist_share.draw_panel(below, tables["twist"])
+        panels.letter(below, "C", -0.06)
         panels.save(figure, path)
 
 

@@ -28,7 +28,7 @@ SMALLEST_STEP = 1e-6
 MOST_CORRECTIONS = 8
 
 
-class _Lost(Exception):
+class _LostError(Exception):
     """A branch could not be followed."""
 
 
@@ -85,8 +85,8 @@ def follow(
     shape: Shape,
     path: Path,
     *,
-    first: float = 0.2,
-    largest: float = 0.5,
+    first: float = 0.4,
+    largest: float = 0.8,
     most: int = 500,
     tangent: Tangent | None = None,
     p: float = 0.0,
@@ -122,9 +122,9 @@ def follow(
 
 
 def fold(chain: Chain, path: Path, before: Point, after: Point) -> Point:
-    """The last point before the branch turns back between two points, in controls to a millionth."""
+    """The last point before the branch turns back between two points, in controls to 1e-6 of their size."""
     now, length = before, 0.5 * _distance(chain, path, before, after)
-    while length > 1e-3:
+    while length > 3e-4:
         found = _correct(chain, path, now, now.tangent, length)
         if found is None or found[0].tangent.p <= 0.0:
             length *= 0.5
@@ -172,7 +172,7 @@ def bifurcation(chain: Chain, path: Path, before: Point, after: Point) -> tuple[
         near = before.shape if share < 0.5 else after.shape
         found = newton(chain, near, path.at(p), still=modes)
         if found is None:
-            raise _Lost
+            raise _LostError
         return found
 
     def critical(p: float) -> float:
@@ -183,7 +183,7 @@ def bifurcation(chain: Chain, path: Path, before: Point, after: Point) -> tuple[
             return None
         p = float(brentq(critical, before.p, after.p, xtol=1e-13, rtol=1e-12))
         shape, system = at(p)
-    except _Lost:
+    except _LostError:
         return None
     return before._replace(p=p, shape=shape), lowest(chain, system, number)[1][first]
 
@@ -193,8 +193,8 @@ def switch(chain: Chain, path: Path, at: Point, mode: Floats, amplitude: float) 
 
     amplitude is the root mean square of the angle that edges turn by [rad]; its sign chooses the side.
     """
-    unit = Tangent(mode * math.sqrt(chain.twisted_length), np.zeros(chain.held), 0.0)
-    found = _correct(chain, path, at, unit, amplitude)
+    outwards = math.copysign(math.sqrt(chain.twisted_length), amplitude) * mode
+    found = _correct(chain, path, at, Tangent(outwards, np.zeros(chain.held), 0.0), abs(amplitude))
     return None if found is None else found[0]
 
 

@@ -33,10 +33,15 @@ PIVOT = Support("plane")
 STRAIGHT = 1e-9
 """End shortening, in units of L, below which a fiber is as good as straight: kappa L is then 2e-4."""
 
+NEAREST = 1e-7
+"""Least end distance, in units of L: an arch whose ends coincide would be free to turn about them."""
+
 FEWEST_EDGES = 4
 
 ACCURACY = 1e-9
 """Relative error of a curvature that is asked for."""
+
+MOST_SECANTS = 25
 
 
 class Bent(NamedTuple):
@@ -108,7 +113,7 @@ class Bent(NamedTuple):
     def stiffness(self) -> float:
         """Least eigenvalue of the constrained Hessian with the ends and both grips held [N]."""
         problem = _device(self.fiber.edges, self.fiber.C / self.fiber.B, rotation_held=True)
-        d = self.end_distance / self.fiber.length
+        d = max(self.end_distance / self.fiber.length, NEAREST)
         system = problem.system(self.shape, controls_at(problem, (d, 0.0, 0.0), rotation=self.rotation))
         return self.fiber.B / self.fiber.length**2 * float(lowest(problem, system)[0][0])
 
@@ -137,6 +142,9 @@ def bent(fiber: Fiber, end_distance: float, total_twist: float = 0.0, near: Bent
             f"ends {end_distance:g} m apart are not those of a bent fiber of length {fiber.length:g} m; give "
             "a distance from 0 to less than its length."
         )
+    if not math.isfinite(total_twist):
+        raise TorsadeError(f"a total twist of {total_twist:g} rad is none; give a finite angle.")
+    d = max(d, NEAREST)
     problem = _device(fiber.edges, fiber.C / fiber.B)
     if near is None:
         begin = controls_at(problem, (d, 0.0, 0.0))
@@ -163,26 +171,27 @@ def bent_until(fiber: Fiber, kappa_max: float, total_twist: float = 0.0, near: B
     if not wanted > 0.0:
         raise TorsadeError(f"a largest curvature of {kappa_max:g} 1/m is none; give one above 0.")
 
-    def at(root: float, start: Bent | None) -> Bent:
-        return bent(fiber, fiber.length * (1.0 - root * root), total_twist, start)
-
-    def off(found: Bent) -> float:
-        return found.kappa_max * fiber.length - wanted
-
-    roots = [min(wanted / (2.0 * math.pi), 0.95)]
-    found = at(roots[0], near)
-    errors = [off(found)]
-    roots.append(min(roots[0] * wanted / (errors[0] + wanted), 0.99))
-    for _ in range(20):
-        found = at(roots[-1], found)
-        errors.append(off(found))
-        if abs(errors[-1]) <= ACCURACY * wanted:
-            return found
-        slope = (errors[-1] - errors[-2]) / (roots[-1] - roots[-2])
-        roots.append(min(max(roots[-1] - errors[-1] / slope, 0.5 * roots[-1]), 0.5 + 0.5 * roots[-1], 1.0))
+    found, before = near, (0.0, 0.0)
+    root = min(wanted / (2.0 * math.pi), 0.5)
+    for _ in range(MOST_SECANTS):
+        try:
+            now = bent(fiber, fiber.length * (1.0 - root * root), total_twist, found)
+        except TorsadeError:
+            root = 0.5 * (root + before[0])
+            continue
+        curvature = now.kappa_max * fiber.length
+        if abs(curvature - wanted) <= ACCURACY * wanted:
+            return now
+        slope = (curvature - before[1]) / (root - before[0]) if root != before[0] else 0.0
+        if slope <= 0.0:
+            break
+        found, before = now, (root, curvature)
+        root = min(max(root + (wanted - curvature) / slope, 0.5 * root), 0.5 * (1.0 + root))
+        if abs(root - before[0]) * root < 1e-15:  # distances nearer to each other are one number
+            return now
     raise TorsadeError(
-        f"no end distance bends a fiber of length {fiber.length:g} m to a curvature of {kappa_max:g} 1/m at "
-        f"a total twist of {total_twist:g} rad; give a smaller one."
+        f"no end distance is known that bends a fiber of length {fiber.length:g} m to a curvature of "
+        f"{kappa_max:g} 1/m at a total twist of {total_twist:g} rad; give a smaller one."
     )
 
 

@@ -13,7 +13,14 @@ from torsade.motion.ends import Boundary
 from torsade.motion.guard import first_crossing
 from torsade.motion.rates import Work, energies, forces
 from torsade.motion.scheme import Control
-from torsade.rod.contact import Contacts, Model, compression, contacts_among, list_contacts
+from torsade.rod.contact import (
+    Contacts,
+    Model,
+    add_drag_torques,
+    compression,
+    contacts_among,
+    list_contacts,
+)
 from torsade.rod.kinematics import edge_geometry
 from torsade.rod.neighbours import (
     NEXT,
@@ -94,7 +101,8 @@ def crossing(
 def measure(a: Assembly, m: Model, bc: Boundary, state: State, w: Work, out: Floats) -> Ints:
     """Stretch, bend, twist and contact energy [J] and total compression [N] of a state, into out (5,).
 
-    Returns the pairs of edges in contact (n_contacts, 2).
+    Returns the pairs of edges in contact (n_contacts, 2); w.drag_torque holds the torques [N m] that the
+    velocities of the state exert by collision drag.
     """
     edge_geometry(state.x, a.edges, w.length, w.tangent)
     edge_midpoints(state.x, a.edges, w.mid)
@@ -103,6 +111,8 @@ def measure(a: Assembly, m: Model, bc: Boundary, state: State, w: Work, out: Flo
     forces(a, m, bc, state.x, state.theta, w.tangent, state.reference_twist, contacts, w)
     energies(a, m, contacts, w, out)
     out[4] = compression(a, m, w.length, w.tangent, contacts)
+    w.drag_torque[:] = 0.0
+    add_drag_torques(a, m, state.v, w.tangent, contacts, w.drag_torque, w.spin_weight)
     return pairs
 
 

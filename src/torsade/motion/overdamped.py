@@ -141,12 +141,15 @@ class Measured(NamedTuple):
     """What a state tells: stored energies, forces between strands, and where they touch.
 
     compression is, over every edge, the sum of the contact forces on it [N] (thesis Fig 4-1B); contacts
-    (n_contacts, 2) are the edges in contact.
+    (n_contacts, 2) are the edges in contact. self_torque (n_edges,) [N] is what strands that slide past
+    each other exert on an edge by collision drag, per rest length (thesis 4.10): by the law of the run,
+    without the share of the edge's own spin.
     """
 
     energies: Energies
     compression: float
     contacts: Ints
+    self_torque: Floats
 
 
 class Checkpoint(NamedTuple):
@@ -263,11 +266,11 @@ class Motion:
         )
 
     def measure(self) -> Measured:
-        """Energies, compression and contacts at the present state."""
-        out = np.empty(5)
-        pairs = measure(self.assembly, self.model, self.boundary, self.state, self._scratch.work, out)
+        """Energies, compression, contacts and self-torque at the present state."""
+        out, work = np.empty(5), self._scratch.work
+        pairs = measure(self.assembly, self.model, self.boundary, self.state, work, out)
         energies = Energies(*(float(e) for e in out[:4]))
-        return Measured(energies, float(out[4]), pairs)
+        return Measured(energies, float(out[4]), pairs, work.drag_torque / self.assembly.rest_length)
 
     def energies(self) -> Energies:
         """Stored energies at the present state."""

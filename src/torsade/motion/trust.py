@@ -22,27 +22,30 @@ from torsade.motion.chain import Chain, Controls, Shape, System
 __all__ = ["imbalance", "minimise", "newton", "settled", "step"]
 
 TOLERANCE, ROUND_OFF = 1e-10, 1e-7
-"""Out-of-balance force, in units of those that act, and gap, in units of L, at which a shape is at equilibrium:
-below the first, or below the second when it falls no further."""
+"""Out-of-balance force, in units of those that act, at which a shape is at equilibrium: below the first, or
+below the second when it falls no further."""
+
+GAPS = 1e3
+"""How much more exact gaps are, in units of L: ends near a fiber's length apart say its slope squared."""
 
 LARGEST_RADIUS = 1.0
 """Longest step, as the root mean square of the angle that edges turn by [rad]."""
 
 
 def imbalance(chain: Chain, shape: Shape, controls: Controls, system: System) -> float:
-    """Norm of what is out of balance: forces in units of those that act or B/L^2, gaps in units of L or radians."""
+    """What is out of balance: forces in units of those that act and B/L^2, gaps in units of L and radians."""
     L = chain.twisted_length
     k = len(chain.weight)
     acting = float(np.abs(shape.reaction).max(initial=0.0)) + float(np.abs(controls.load).max(initial=0.0))
     unit = acting + abs(shape.torque) / L + chain.B / L**2
     force = float(np.linalg.norm(system.residual)) / math.sqrt(L) / unit
     gap = float(np.abs(system.gap[:k]).max(initial=0.0)) / L
-    return max(force, gap, float(np.abs(system.gap[k:]).max(initial=0.0)))
+    return max(force, GAPS * gap, GAPS * float(np.abs(system.gap[k:]).max(initial=0.0)))
 
 
 def settled(size: float, before: float) -> bool:
     """Whether an imbalance is none, after the one before it."""
-    return size < TOLERANCE or (size < ROUND_OFF and size > 0.5 * before)
+    return size < TOLERANCE or (0.5 * before < size < ROUND_OFF and before < ROUND_OFF)
 
 
 def step(chain: Chain, shape: Shape, system: System, dq: Floats, ds: Floats) -> Shape:
@@ -54,7 +57,7 @@ def step(chain: Chain, shape: Shape, system: System, dq: Floats, ds: Floats) -> 
 
 
 def newton(
-    chain: Chain, shape: Shape, controls: Controls, most: int = 12, still: Sequence[Floats] = ()
+    chain: Chain, shape: Shape, controls: Controls, most: int = 12, still: Sequence[Floats] | Floats = ()
 ) -> tuple[Shape, System] | None:
     """The equilibrium next to a shape, stable or not, and its derivatives; None when none is near.
 
@@ -82,7 +85,7 @@ def newton(
     return None
 
 
-def _without(system: System, still: Sequence[Floats]) -> Bordered:
+def _without(system: System, still: Sequence[Floats] | Floats) -> Bordered:
     """The Newton system in which some motions are kept from taking part."""
     if len(still) == 0:
         return Bordered(system.band, system.border, system.corner)
@@ -109,7 +112,7 @@ def minimise(chain: Chain, shape: Shape, controls: Controls, most: int = 200) ->
         size = imbalance(chain, shape, controls, system)
         if shift == 0.0 and settled(size, before):
             return shape
-        before = size
+        before = size if shift == 0.0 else math.inf
         solver, shift, dq, ds = _within(chain, system, solver, shift, radius)
         weight = 2.0 * float(np.abs(shape.reaction + ds[: len(chain.weight)]).max(initial=0.0))
         weight += chain.B / chain.twisted_length**2

@@ -81,8 +81,8 @@ class BendTwist(Still):
             )
         if self.end_distance > self.length:
             raise TorsadeError(
-                f"end_distance {self.end_distance:g} m is more than the fiber's length, {self.length:g} m, and "
-                "it does not stretch; give a smaller distance"
+                f"end_distance {self.end_distance:g} m is more than the fiber's length, {self.length:g} m, "
+                "and it does not stretch; give a smaller distance"
             )
         return self
 
@@ -99,13 +99,12 @@ class BendTwist(Still):
         from torsade.motion.equilibrium import bent, limit_curvature
 
         found = bent(self.fiber, self.end_distance, self.twist)
-        if found.kappa_max * self.h >= 1:
-            raise TorsadeError(
-                f"the fiber would be bent to a radius of {1 / found.kappa_max:.3g} m, less than its own, "
-                f"{self.h:g} m; give a larger end_distance, or a thinner fiber"
-            )
         a, state = found.assembled()
+        last = self.nodes - 1
         numbers: dict[str, Any] = {
+            "kappa_max_per_m": found.kappa_max,
+            "kappa_middle_per_m": float(found.kappa[[last // 2, self.nodes // 2]].mean()),
+            "kappa_end_per_m": float(found.kappa[0]),
             "thrust_N": found.thrust,
             "force_N": found.force.tolist(),
             "torque_N_m": found.torque,
@@ -130,16 +129,15 @@ class BendTwist(Still):
     def report(cls, result: Result) -> dict[str, Any]:
         """The numbers of a result under the keys of `--json`."""
         data, attrs, spec = result.dataset.isel(time=0), result.dataset.attrs, result.spec
-        kappa = data["curvature"].values
         return {
             "protocol": "bend-twist",
             "length_m": spec["length"],
             "end_distance_m": spec["end_distance"],
             "twist_rad": spec["twist"],
-            "kappa_max_per_m": float(kappa.max()),
+            "kappa_max_per_m": attrs["kappa_max_per_m"],
             "kappa_max_range_per_m": attrs.get("kappa_max_range_per_m"),
-            "kappa_middle_per_m": float((kappa[(len(kappa) - 1) // 2] + kappa[len(kappa) // 2]) / 2),
-            "kappa_end_per_m": float(kappa[0]),
+            "kappa_middle_per_m": attrs["kappa_middle_per_m"],
+            "kappa_end_per_m": attrs["kappa_end_per_m"],
             "thrust_N": attrs["thrust_N"],
             "force_N": attrs["force_N"],
             "torque_N_m": attrs["torque_N_m"],
@@ -150,6 +148,6 @@ class BendTwist(Still):
             "least_stiffness_N": attrs["least_stiffness_N"],
             "energy_bend_J": float(data["energy_bend"]),
             "energy_twist_J": float(data["energy_twist"]),
-            "nodes": len(kappa),
+            "nodes": spec["nodes"],
             "wall_s": attrs["wall_s"],
         }

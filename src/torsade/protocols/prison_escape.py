@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from torsade.arrays import Floats
     from torsade.assembly import Assembly, State
     from torsade.centerline import Centerline
+    from torsade.motion.overdamped import Measured
     from torsade.results import Result
 
 __all__ = ["PrisonEscape"]
@@ -133,7 +134,7 @@ class PrisonEscape(Knotted):
 
     def experiment(self, assembly: Assembly, state: State) -> Experiment:
         """One end clamped, one pulled by a constant force; their distance along the pull measured."""
-        from torsade import observables
+        from torsade import observables, reptation
         from torsade.motion import ends
         from torsade.protocols.slack import take_up_slack
 
@@ -146,8 +147,16 @@ class PrisonEscape(Knotted):
         def measure(now: State) -> dict[str, float]:
             return {"separation": float(axis @ (now.x[last] - now.x[first]))}
 
+        def observe(now: State, measured: Measured) -> dict[str, float]:
+            found = reptation.fit_state(assembly, now, measured.self_torque, (clamped[1], pulled[1]))
+            return {"rotation_rate": 0.0 if found is None else float(found.rotation @ axis)}
+
         def derive(history: Mapping[str, Floats]) -> dict[str, Floats]:
-            return {"pull_speed": observables.pull_speed(history["time"], history["separation"])}
+            time = history["time"]
+            return {
+                "pull_speed": observables.pull_speed(time, history["separation"]),
+                "rotation": observables.integral(time, history["rotation_rate"]),
+            }
 
         def conclude(history: Mapping[str, Floats], loose_at: float | None) -> dict[str, float]:
             found = observables.friction(
@@ -178,7 +187,8 @@ class PrisonEscape(Knotted):
                 f"{'AB'[clamped[0]]}; give two strands that are hooked, or other ends in pulled"
             )
         about = {"pulled": "".join(f"{'AB'[s]}{e}" for s, e in (clamped, pulled))}
-        return Experiment(boundary, measure, derive, conclude, catch, ("separation",), about)
+        sampled, observed = ("separation",), ("rotation_rate",)
+        return Experiment(boundary, measure, derive, conclude, catch, sampled, about, observe, observed)
 
     def _axis(self, apart: Floats) -> Floats:
         """Unit vector of the pull, which must lead away from the clamped end, `apart` [m] before it."""
@@ -200,7 +210,11 @@ class PrisonEscape(Knotted):
 
     @classmethod
     def report(cls, result: Result) -> dict[str, Any]:
-        """The numbers of a result under the keys of `--json`; twist_rad is [strand][time]."""
+        """The numbers of a result under the keys of `--json`; twist_rad is [strand][time].
+
+        rotation_rad is by how much the knot has turned about the pull, counterclockwise as seen from where it
+        is pulled to.
+        """
         data, attrs = result.dataset, result.dataset.attrs
         return {
             "protocol": "prison-escape",
@@ -215,6 +229,7 @@ class PrisonEscape(Knotted):
             "separation_m": data["separation"].values.tolist(),
             "compression_N": data["compression"].values.tolist(),
             "twist_rad": data["twist"].values.T.tolist(),
+            "rotation_rad": data["rotation"].values.tolist(),
             "steps": attrs["steps"],
             "wall_s": attrs["wall_s"],
         }

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from torsade.centerline import Centerline
     from torsade.motion.ends import Boundary
     from torsade.motion.moving import Outcome
-    from torsade.motion.overdamped import Laws, Motion, Stepping
+    from torsade.motion.overdamped import Laws, Measured, Motion, Stepping
 
 __all__ = ["STANDARD_SPACING", "Experiment", "Pulled"]
 
@@ -57,6 +57,8 @@ COMMON = (
     "dissipation",
     "position",
     "log_strain",
+    "velocity",
+    "self_torque",
     "strain_stretch",
     "strain_bend",
     "strain_twist",
@@ -78,6 +80,7 @@ class Experiment(NamedTuple):
         say whether there is such a place
     sampled : measures that `conclude` needs, recorded at times that do not depend on the number of frames
     about : attributes of the result, in words
+    observe : state and what a motion measures on it → further scalars of one frame, named in `observed`
     over : asked whenever something is recorded after t = 0: whether there is nothing left to see
     later : ends and loads that take the place of those before at given times [s], in order of time
     """
@@ -89,6 +92,8 @@ class Experiment(NamedTuple):
     catch: Callable[[State], bool] = lambda state: False
     sampled: tuple[str, ...] = ()
     about: Mapping[str, str] = MappingProxyType({})
+    observe: Callable[[State, Measured], dict[str, float]] = lambda state, measured: {}
+    observed: tuple[str, ...] = ()
     over: Callable[[State], bool] = lambda state: False
     later: tuple[tuple[float, Boundary], ...] = ()
 
@@ -263,14 +268,18 @@ class Pulled(Driven):
         does = self.experiment(assembly, state)
         fiber = model(self.fiber_material, self.section, self.laws)
         motion = Motion(assembly, fiber, does.boundary, state, self.stepping)
-        own = does.measure(state)
+        own = does.measure(state) | dict.fromkeys(does.observed, 0.0)
         first = {name: np.array([value]) for name, value in ({"time": 0.0} | own).items()}
         return Trial(
             motion,
             (*COMMON, *own),
             lambda: _frame(does, motion, self.h),
             does.conclude,
-            sizes={"fiber": len(assembly.closed), "node": len(assembly.node_length)},
+            sizes={
+                "fiber": len(assembly.closed),
+                "node": len(assembly.node_length),
+                "edge": len(assembly.edges),
+            },
             fixed={
                 "node_start": ("fiber_bound", assembly.node_start.copy()),
                 "closed": ("fiber", assembly.closed.copy()),
@@ -333,5 +342,7 @@ def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, f
         "strain_stretch": strain.stretch,
         "strain_bend": strain.bend,
         "strain_twist": strain.twist,
+        "velocity": state.v,
+        "self_torque": now.self_torque,
     }
-    return common | experiment.measure(state)
+    return common | experiment.measure(state) | experiment.observe(state, now)

@@ -19,7 +19,7 @@ LARGEST_COUNT = 100_000
 """Most nodes of a run: a step then takes about a second."""
 
 LARGEST_RESULT = 4_000_000_000
-"""Most that positions and strains of all frames may take in memory [bytes]."""
+"""Most that positions, velocities, strains and torques of all frames may take in memory [bytes]."""
 
 
 def open_strands(path: str, spec: Knotted, strands: int, wanted: str) -> Centerline:

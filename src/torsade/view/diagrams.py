@@ -19,14 +19,15 @@ from numpy.typing import NDArray
 from torsade.topology.diagram import Diagram
 from torsade.topology.seifert import turning
 from torsade.view._extra import require
+from torsade.view.colours import STRAND_COLOURS
 from torsade.view.layout import Layout, laid_out
 
-__all__ = ["NEGATIVE", "POSITIVE", "STRANDS", "draw_diagram"]
+__all__ = ["NEGATIVE", "POSITIVE", "STRANDS", "draw_crossing", "draw_diagram"]
 
 Complexes = NDArray[np.complex128]
 
-STRANDS = ("#2f6fa8", "#c9543f", "#5d8f4e", "#8a63a6")
-"""Colours of strands A, B, ..."""
+STRANDS = STRAND_COLOURS
+"""Colours of strands A, B, ..., as in pictures."""
 
 POSITIVE, NEGATIVE = "#b3312c", "#3b4da0"
 """Colours of right-handed crossings and counterclockwise loops, and of the others."""
@@ -293,3 +294,22 @@ def _pole(curve: Complexes, others: Sequence[Complexes]) -> complex:
 def _within(curve: Complexes, points: Complexes) -> NDArray[np.bool_]:
     path = require("matplotlib.path").Path(np.stack([curve.real, curve.imag], axis=1))
     return np.asarray(path.contains_points(np.stack([points.real, points.imag], axis=1)))
+
+
+def draw_crossing(
+    axes: Any,
+    sign: int,
+    *,
+    at: complex = 0j,
+    colours: Sequence[str] = STRANDS,
+    width: float = 2.4,
+) -> None:
+    """Draw a crossing: strand A above, right-handed for +1, left-handed for -1; one unit to each end."""
+    s = np.linspace(-1, 1, 2 * _FINE + 1)
+    up, down = np.exp(0.25j * np.pi), np.exp(0.75j * np.pi)
+    # Right-handed: the upper strand turned counterclockwise comes to lie along the lower one.
+    above, below = (at + s * way for way in ((up, down) if sign > 0 else (down, up)))
+    _cut(axes, above, [], colours[0], width)
+    _cut(axes, below, [_FINE], colours[1], width)
+    for curve, colour in ((above, colours[0]), (below, colours[1])):
+        _arrow(axes, curve, len(curve) - 1, colour, 4.2 * width)

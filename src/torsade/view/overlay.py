@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade.view._extra import require
+from torsade.view.arrows import Arrow, draw_arrows
 from torsade.view.camera import View
 from torsade.view.colours import STRAIN_MAX, strain_colormap
 
@@ -38,13 +39,19 @@ class Mark(NamedTuple):
 
 
 def draw_over(
-    picture: Floats, view: View, strands: Sequence[Floats], radius: float, marks: Sequence[Mark], bar: bool
+    picture: Floats,
+    view: View,
+    strands: Sequence[Floats],
+    radius: float,
+    marks: Sequence[Mark],
+    arrows: Sequence[Arrow],
+    bar: bool,
 ) -> Floats:
-    """The picture (height, width, 3), 0..1, with marks and, if asked for, the strain colour bar.
+    """The picture (height, width, 3), 0..1, with marks, arrows and, if asked for, the strain colour bar.
 
     Strands are the nodes (n, 3) of each, in the unit of the view and of the radius.
     """
-    if not (bar or marks):
+    if not (bar or marks or arrows):
         return picture
     figure_module, agg = require("matplotlib.figure"), require("matplotlib.backends.backend_agg")
     height, width = picture.shape[:2]
@@ -54,6 +61,7 @@ def draw_over(
         axes = figure.add_axes((0, 0, 1, 1), facecolor="none")
         axes.set(xlim=(0, width), ylim=(0, height))
         axes.axis("off")
+        draw_arrows(axes, arrows, view, strands, radius)
         pixels = [view.pixels(x) for x in strands]
         for mark in marks:
             _draw_mark(axes, mark, view, pixels, radius * view.scale(strands[mark.strand]))

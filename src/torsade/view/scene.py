@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from torsade.errors import TorsadeError, reason_of
 from torsade.view._extra import require
+from torsade.view.arrows import Arrow
 from torsade.view.camera import (
     SAMPLE,
     VIEW_ANGLE,
@@ -48,6 +49,8 @@ def render(
     fill: float | None = None,
     fade: float = 0.0,
     marks: Sequence[Mark] = (),
+    arrows: Sequence[Arrow] = (),
+    palette: Callable[[Floats], Floats] = strain_colour,
     bar: bool = True,
 ) -> Path:
     """Write a picture (PNG) of strands, framed tightly on the knot that they form.
@@ -59,7 +62,7 @@ def render(
     radius : h [m]
     path : the file to write
     values : log strain (n,) of each strand: measured strain colours and a colour bar; without it every
-        strand has its own colour
+        strand has its own colour; other values with another palette
     size : width and height [pixels], multiples of 16
     direction : (3,) from the knot to the camera; without it the side is taken that shows the knot best,
         with the x axis horizontal when a strand has ends to be pulled
@@ -67,14 +70,17 @@ def render(
         out of the frame, 0.84 when all of them is in it
     fade : share of the frame's width over which strands fade away toward its borders
     marks : names and arrows at the ends of strands
+    arrows : on strands, where they are in sight
+    palette : colour (..., 3) of values (...,); by default the measured one of strain
     bar : whether strain colours are explained by a colour bar
 
     Returns
     -------
     The path of the file.
     """
-    options: dict[str, Any] = {"values": values, "size": size, "direction": direction}
-    image = picture(strands, closed, radius, fill=fill, fade=fade, marks=marks, bar=bar, **options)
+    options: dict[str, Any] = {"values": values, "size": size, "direction": direction, "fill": fill}
+    options |= {"marks": marks, "arrows": arrows, "palette": palette, "bar": bar}
+    image = picture(strands, closed, radius, fade=fade, **options)
     path = Path(path)
     pixels = np.round(255.0 * image).astype(np.uint8)
     try:
@@ -119,6 +125,8 @@ def picture(
     fill: float | None = None,
     fade: float = 0.0,
     marks: Sequence[Mark] = (),
+    arrows: Sequence[Arrow] = (),
+    palette: Callable[[Floats], Floats] = strain_colour,
     bar: bool = True,
 ) -> Floats:
     """The picture that `render` writes, as an array (height, width, 3) of sRGB from 0 to 1."""
@@ -134,12 +142,13 @@ def picture(
     if values is None:
         colours = [np.tile(strand_colour(s), (len(m.vertices), 1)) for s, m in enumerate(meshes)]
     else:
-        colours = [strain_colour(m.at_vertices(v)) for m, v in zip(meshes, values, strict=True)]
+        colours = [palette(m.at_vertices(v)) for m, v in zip(meshes, values, strict=True)]
     colours = _lit(meshes, colours, _pieces(curves, loops), view)
     image = _rasterised(meshes, colours, view)
     if fade > 0:
         image = _faded(image, fade)
-    return draw_over(image, view, nodes, 1.0, marks, bar=bar and values is not None)
+    explained = bar and values is not None and palette is strain_colour
+    return draw_over(image, view, nodes, 1.0, marks, arrows, bar=explained)
 
 
 def _checked(
