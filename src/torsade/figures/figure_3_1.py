@@ -113,7 +113,7 @@ def _paths(axes: Any, table: Table) -> None:
     bar = axes.figure.colorbar(points, ax=axes, aspect=25, pad=0.02)
     bar.set_label(r"least length $\lambda$ given (mm)")
     bar.outline.set_visible(False)
-    axes.set(xlim=(0, 300), ylim=(0, reach), xlabel="time between the first two breaks (µs)")
+    axes.set(xlim=(0, 350), ylim=(0, reach), xlabel="time between the first two breaks (µs)")
     axes.set_ylabel("distance between them (mm)")
     axes.legend(frameon=False, fontsize=6.5, loc="lower right")
 
