@@ -141,7 +141,7 @@ def test_thrust_of_nearly_straight_rods(degrees: float) -> None:
 
 
 def test_an_unstable_arch_falls_into_the_helix() -> None:
-    """Disturbed with its grips held, the arch of 360 deg ends in a stable shape of less energy and less twist.
+    """Disturbed with its grips held, the arch of 360 deg ends in a stable shape of less energy and twist.
 
     The way of buckling that is softer, grown large: bent most at its ends, and swung out to one side of the
     plane, by the sign of the disturbance.

@@ -102,6 +102,34 @@ def test_a_move_shows_stored_energies_and_crossings_against_the_way(figure):
     assert upper.get_title(loc="left") == "R1"
 
 
+def arch(height):
+    """Half an ellipse over 190 mm, one frame of it, off its plane by 2 mm."""
+    s = np.linspace(0.0, np.pi, 41)
+    x = np.stack([0.095 * (1 - np.cos(s)), height * np.sin(s), 0.002 * np.sin(2 * s)], axis=1)
+    variables = {
+        "position": (("time", "node", "space"), x[None]),
+        "curvature": (("time", "node"), 5 + np.sin(s)[None]),
+        "twist": (("time", "fiber"), [[np.radians(270)]]),
+    }
+    return xr.Dataset(variables, {"time": [0.0]})
+
+
+@pytest.mark.parametrize("height", [0.02, 0.065, 0.3])
+def test_a_bent_fiber_is_whole_and_in_proportion(figure, height):
+    plots.plot_bent(arch(height), "x.png")
+    side, above, bend = figure().axes
+    assert curve(side)[1].max() == pytest.approx(1e3 * height)
+    for axis in (side, above, bend):
+        x, y = curve(axis)
+        (left, right), (low, high) = axis.get_xlim(), axis.get_ylim()
+        assert left <= x.min() < x.max() <= right
+        assert low <= y.min() < y.max() <= high
+    assert side.get_aspect() == 1.0
+    assert above.get_xlim() == pytest.approx(side.get_xlim(), abs=3)
+    assert bend.get_ylim()[0] == 0
+    assert side.get_title(loc="left") == "ends 190 mm apart,  total twist 270°"
+
+
 @pytest.mark.parametrize(("ending", "start"), [("png", b"\x89PNG"), ("pdf", b"%PDF"), ("svg", b"<?xml")])
 def test_the_ending_chooses_the_format(tmp_path, ending, start):
     path = plots.plot_separation(bend(knot="thief", slipped_at_s=0.7), tmp_path / f"a.{ending}")

@@ -174,12 +174,12 @@ def plot_bent(dataset: xarray.Dataset, path: str | Path) -> Path:
     along = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(x) ** 2 + np.diff(y) ** 2 + np.diff(z) ** 2))])
     twist = np.degrees(_values(dataset, "twist")[0, 0])
     with require("matplotlib").rc_context(STYLE):
-        heights = (3.9 * min(1.0, max(0.2, float(np.ptp(y)) / float(np.ptp(x) + 1e-9))), 0.9, 1.4)
+        heights = (3.9 * min(0.8, max(0.2, float(np.ptp(y)) / float(np.ptp(x) + 1e-9))), 0.9, 1.4)
         size = (4.5, 1.2 + sum(heights))
         figure = require("matplotlib.figure").Figure(figsize=size, layout="constrained")
         side, above, bend = figure.subplots(3, 1, height_ratios=heights)
         side.plot(x, y, color=CURVE)
-        side.set_aspect("equal", adjustable="box")
+        side.set_aspect("equal", adjustable="datalim")
         side.set(ylabel="y (mm)")
         above.plot(x, z, color=CURVE)
         above.set(xlabel="x (mm)", ylabel="z (mm)")
@@ -189,6 +189,10 @@ def plot_bent(dataset: xarray.Dataset, path: str | Path) -> Path:
         bend.set_ylim(bottom=0.0)
         side.set_title(f"ends {x[-1] - x[0]:.4g} mm apart,  total twist {twist:.4g}°")
         figure.align_ylabels((side, above, bend))
+        figure.draw_without_rendering()  # the shape's aspect settles its limits then
+        above.set_xlim(side.get_xlim())
+        out = max(1.1 * float(np.abs(z).max()), 0.01 * along[-1])
+        above.set_ylim(-out, out)
         return save(figure, path)
 
 
