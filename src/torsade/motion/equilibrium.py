@@ -301,8 +301,8 @@ def _force(problem: Chain, tangent: Floats, x: Floats, torque: float) -> Floats:
     """Force (3,) on the last end that balances moments best, M + x x F = const at all nodes x (n_nodes, 3).
 
     With M = B kb/lbar + M_t t. The reaction that holds the end of the discrete fiber is the exact slope of
-    its energy, and a little larger, since |kb| = 2 tan(phi/2) grows faster than the angle phi: by (kappa l)^2/4
-    in a sharp bend. Taken from moments the error is about ten times smaller.
+    its energy, and a little larger, since |kb| = 2 tan(phi/2) grows faster than the angle phi: by
+    (kappa l)^2/4 in a sharp bend. Taken from moments the error is about ten times smaller.
     """
     a, b = tangent[:-1], tangent[1:]
     cosine = np.einsum("kc,kc->k", a, b)[:, None]
