@@ -22,7 +22,7 @@ from torsade.motion.branches import Path, carry, fold, follow
 from torsade.motion.chain import Chain, Controls, Shape
 from torsade.motion.spectrum import lowest, unstable_modes
 from torsade.motion.supports import Fiber, Support, chain, controls_at, shape_along
-from torsade.motion.trust import minimise
+from torsade.motion.trust import minimise, newton
 from torsade.rod.elasticity import hinge_curvature
 
 __all__ = ["Bent", "Range", "bent", "bent_until", "curvature_from_distance"]
@@ -277,8 +277,11 @@ def _followed(problem: Chain, shape: Shape, path: Path) -> Shape:
         if point.tangent.p <= 0.0:
             break
         before = point
-    if before is not None and point is not None:
-        before = fold(problem, path, before, point) if point.tangent.p <= 0.0 else before
+    if before is not None and point is not None and point.tangent.p <= 0.0:
+        before = fold(problem, path, before, point)
+        found = newton(problem, before.shape, path.stop) if before.p >= 1.0 else None
+        if found is not None:
+            return found[0]
     last = path.start if before is None else path.at(before.p)
     held = problem.rotation_held
     what = "grips turned by" if held else "a total twist of"
