@@ -34,6 +34,7 @@ KERNEL_SOURCES = (
     "topology",
     "rod",
     "motion",
+    "fracture/breaking.py",
     "fracture/criteria.py",
     "fracture/stress_kernels.py",
     "knots/band.py",

@@ -156,7 +156,7 @@ def test_a_cascade_is_over_a_given_time_after_its_first_break() -> None:
     )
     a, state, boundary = gripped(shape.x, shape.grips)
     motion = Inertial(a, SPAGHETTI, SECTION, boundary, state)
-    cascade = Cascade(motion, Fracture(np.full(51, 1.9e7)), SPAGHETTI, SECTION, followed=1e-4)
+    cascade = Cascade(motion, Fracture(np.full(51, 2e7)), SPAGHETTI, SECTION, followed=1e-4)
     assert cascade.advance(5e-5) is Outcome.REACHED
     cascade.snap([weakest + 1])
     assert cascade.advance(1e-3) is Outcome.OVER

@@ -1,9 +1,12 @@
 """Trials in files: what is read, and the sentence that each kind of mistake gets."""
 
+import contextlib
 import math
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from torsade.errors import TorsadeError
 from torsade.fracture.analysis import analyse
@@ -12,6 +15,7 @@ from torsade.fracture.theory.elastica import elastica
 from torsade.fracture.trials import Trials, read_trials
 
 ROD = spaghetti()
+Factory = pytest.TempPathFactory
 
 
 def trials(folder: Path, text: str) -> Trials:
@@ -110,6 +114,20 @@ def test_no_file_and_no_text(tmp_path: Path) -> None:
         read_trials(tmp_path / "a.csv", ROD)
 
 
+CELLS = st.text("0123456789.,;\t\"'+-eE naif|/#%°()[]_twislenghpcdmr", max_size=12)
+
+
+@settings(max_examples=300, deadline=None)
+@given(lines=st.lists(st.lists(CELLS, min_size=1, max_size=4), max_size=5))
+def test_whatever_a_file_holds_it_is_read_or_refused(
+    lines: list[list[str]], tmp_path_factory: Factory
+) -> None:
+    text = "\n".join(["lengths_mm,twist_deg,pieces", *(",".join(line) for line in lines)])
+    with contextlib.suppress(TorsadeError):
+        read = trials(tmp_path_factory.mktemp("a"), text)
+        assert all(t.pieces >= 2 and sum(t.lengths) <= 1.05 * ROD.L + 1e-9 for t in read.trials)
+
+
 class TestAnalysis:
     TEXT = """twist_deg,end_distance_mm,lengths_mm,speed_mm_per_s
 0,176,90 30 120,3
@@ -140,6 +158,16 @@ class TestAnalysis:
         found = analyse(trials(tmp_path, text).trials, ROD, 1.9e7)
         known = (14.28572, 14.70785, 15.38352)
         assert [b.kappa for b in found.each] == pytest.approx(known, rel=1e-3)
+
+    def test_error_of_the_distance_becomes_a_range(self, tmp_path: Path) -> None:
+        """1 mm is about 0.12 1/m at 176 mm, twisted or not."""
+        text = "pieces,twist_deg,end_distance_mm,end_distance_error_mm\n2,0,176,1\n2,200,176,1\n"
+        for b in analyse(trials(tmp_path, text).trials, ROD, 1.9e7).each:
+            assert b.kappa is not None
+            assert b.kappa_low is not None
+            assert b.kappa_high is not None
+            assert b.kappa_high - b.kappa == pytest.approx(0.12, abs=0.02)
+            assert b.kappa - b.kappa_low == pytest.approx(0.12, abs=0.02)
 
     def test_straight_twisted_rods_have_no_curvature(self, tmp_path: Path) -> None:
         found = analyse(trials(tmp_path, "pieces,twist_deg,end_distance_mm\n2,350,240\n").trials, ROD, 1.9e7)

@@ -30,6 +30,8 @@ __all__ = [
     "SIGMA_C",
     "critical_curves",
     "draw_pieces",
+    "half",
+    "mean_by",
     "pieces_colour",
     "sector_table",
     "trial_table",

@@ -28,18 +28,18 @@ ROD = breaking.RODS[1]
 LENGTHS = (0.01, 0.015, 0.02, 0.03, 0.04, 0.05)
 """Least lengths of a fragment [m] of the rods in D."""
 
-TIMES = (0.0, 50e-6, 70e-6, 150e-6, 200e-6, 400e-6)
+TIMES = (0.0, 100e-6, 160e-6, 300e-6, 350e-6, 600e-6)
 
 
 def runs(choice: Choice) -> Mapping[str, Spec]:
     """One cascade, and rods of many least lengths."""
     from torsade.protocols.snap_twist import SnapTwist
 
-    edges, seeds = (50, 1) if choice.quick else (100, 8)
-    cascade = SnapTwist(edges=edges, frames=50 if choice.quick else 412, pieces="frozen")
+    seeds = 1 if choice.quick else 8
+    cascade = SnapTwist(frames=50 if choice.quick else 412, pieces="frozen")
     return {"cascade-frozen": cascade} | {
         f"second-{1e3 * length:g}-{seed}": SnapTwist(
-            edges=edges, min_fragment=length, disorder=breaking.DISORDER, seed=seed, frames=4
+            min_fragment=length, disorder=breaking.DISORDER, seed=seed, frames=4
         )
         for length in LENGTHS
         for seed in range(1, seeds + 1)
@@ -113,7 +113,7 @@ def _paths(axes: Any, table: Table) -> None:
     bar = axes.figure.colorbar(points, ax=axes, aspect=25, pad=0.02)
     bar.set_label(r"least length $\lambda$ given (mm)")
     bar.outline.set_visible(False)
-    axes.set(xlim=(0, 300), ylim=(0, reach), xlabel="time between the first two breaks (µs)")
+    axes.set(xlim=(0, 350), ylim=(0, reach), xlabel="time between the first two breaks (µs)")
     axes.set_ylabel("distance between them (mm)")
     axes.legend(frameon=False, fontsize=6.5, loc="lower right")
 

@@ -33,10 +33,9 @@ def runs(choice: Choice) -> Mapping[str, Spec]:
     """Two cascades, and trials."""
     from torsade.protocols.snap_twist import SnapTwist
 
-    edges, frames, seeds = (50, 41, 1) if choice.quick else (100, 206, 5)
+    frames, seeds = (41, 1) if choice.quick else (206, 5)
     shapes = {
-        f"cascade-{degree:g}": SnapTwist(twist=math.radians(degree), edges=edges, frames=frames)
-        for degree in SHAPES
+        f"cascade-{degree:g}": SnapTwist(twist=math.radians(degree), frames=frames) for degree in SHAPES
     }
     degrees = DEGREES[::4] if choice.quick else DEGREES
     return shapes | breaking.twist_trials(1, degrees, range(1, seeds + 1))

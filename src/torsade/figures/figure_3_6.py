@@ -121,6 +121,18 @@ def _factors(axes: Any, table: Table) -> None:
         "linear wave, 1.428", (0.98, AMPLIFICATION), xycoords=("axes fraction", "data"), xytext=(0, -3),
         textcoords="offset points", ha="right", va="top", fontsize=6.5,
     )  # fmt: skip
+    edges = sorted(set(columns["edges"].astype(int)))
+    for at, name, text, below in (
+        (finest, "C", f"{edges[-1]} edges, anywhere", False),
+        (~finest, "C", f"{edges[0]} edges, anywhere", False),
+        (finest, "C_beyond_2_cm", f"{edges[-1]} edges, from 2 cm on", True),
+    ):
+        heights = columns[name][at & (columns["twist_deg"] == 0)]
+        if len(heights):
+            axes.annotate(
+                text, (4, heights.min() if below else heights.max()), xytext=(0, -5 if below else 3),
+                textcoords="offset points", va="top" if below else "bottom", fontsize=6.5,
+            )  # fmt: skip
     axes.set(ylim=(1.38, 1.72), xlim=(-12, 345), xlabel="twist (degrees)", ylabel="curvature increase C")
     axes.xaxis.set_major_locator(require("matplotlib.ticker").MultipleLocator(90))
     axes.legend(frameon=False, fontsize=6.5, ncols=3, loc="upper left", handlelength=1.4, columnspacing=1.0)

@@ -53,7 +53,6 @@ def runs(which: int, choice: Choice, law: str = "scaled") -> dict[str, SnapQuenc
             sigma_c=breaking.SIGMA_C[which],
             speed=v,
             min_fragment=least_length(v, law),
-            edges=100,
             approach=0.01,
             disorder=breaking.DISORDER,
             seed=seed,

@@ -29,7 +29,7 @@ from torsade.fracture.theory.bending_wave import AMPLIFICATION
 from torsade.fracture.theory.binary import Threshold, li, li_threshold, threshold
 from torsade.fracture.theory.elastica import curvature_at
 from torsade.fracture.trials import Trial
-from torsade.motion.equilibrium import bent
+from torsade.motion import equilibrium
 from torsade.motion.supports import Fiber
 
 __all__ = ["Analysis", "AtSpeed", "Broken", "Fits", "analyse"]
@@ -45,7 +45,7 @@ class Broken:
     Attributes
     ----------
     trial : as it was read
-    kappa, kappa_error : limit curvature, and its error from that of the end-to-end distance [1/m]
+    kappa, kappa_low, kappa_high : limit curvature, and its range from the error of the distance [1/m]
     planar : whether that curvature is of a planar shape although the rod was twisted, for want of another
     li : weight of twist over bending (3.3)
     stress : of the criterion, when it broke [Pa]
@@ -54,7 +54,8 @@ class Broken:
 
     trial: Trial
     kappa: float | None
-    kappa_error: float
+    kappa_low: float | None
+    kappa_high: float | None
     planar: bool
     li: float | None
     stress: float | None
@@ -172,16 +173,18 @@ def analyse(
 
 
 def _broken(trial: Trial, rod: Rod, criterion: str) -> Broken:
-    kappa, error, planar = trial.limit_curvature, 0.0, False
+    kappa, planar = trial.limit_curvature, False
+    low = high = kappa
     if kappa is None and trial.end_distance is not None:
-        kappa, error, planar = _curvature(trial.end_distance, trial.end_distance_error, trial.twist, rod)
+        (kappa, low, high), planar = _curvature(trial, rod)
     sigma = None
     if kappa is not None:
         sigma = float(stress(kappa, trial.twist / rod.L, rod.E, rod.mu, rod.h, criterion))
     return Broken(
         trial=trial,
         kappa=kappa,
-        kappa_error=error,
+        kappa_low=low,
+        kappa_high=high,
         planar=planar,
         li=None if kappa is None or (kappa == 0 and trial.twist == 0) else li(trial.twist, kappa, rod),
         stress=sigma,
@@ -189,21 +192,23 @@ def _broken(trial: Trial, rod: Rod, criterion: str) -> Broken:
     )
 
 
-def _curvature(distance: float, error: float, twist: float, rod: Rod) -> tuple[float, float, bool]:
-    """Largest curvature from the end-to-end distance [m], its error, and whether it is of a planar shape.
+def _curvature(trial: Trial, rod: Rod) -> tuple[tuple[float, float, float], bool]:
+    """Largest curvature from the end-to-end distance with its range, and whether it is of a planar shape.
 
     Without twist the elastica in closed form. With it the equilibrium in the twist device, whose error is
-    smaller than 1e-4; where there is none, as with straight rods, the elastica again.
+    smaller than 1e-3; where there is none, as with straight rods, the elastica again.
     """
-    planar, spread = curvature_at(rod.L, distance, error)
-    if twist == 0:
-        return planar, spread, False
-    fiber = Fiber(rod.L, EDGES, rod.B, rod.C)
-    try:
-        kappa = bent(fiber, distance, twist).kappa_max
-    except TorsadeError:
-        return planar, spread, True
-    return kappa, spread * kappa / planar if planar else spread, False
+    assert trial.end_distance is not None
+    if trial.twist:
+        fiber = Fiber(rod.L, EDGES, rod.B, rod.C)
+        try:
+            return (
+                equilibrium.limit_curvature(fiber, trial.end_distance, trial.twist, trial.end_distance_error),
+                False,
+            )
+        except TorsadeError:
+            pass
+    return curvature_at(rod.L, trial.end_distance, trial.end_distance_error), trial.twist != 0
 
 
 def _binary(group: Sequence[Broken]) -> Share | None:

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 __all__ = ["dimension_of", "sentence"]
 
+PROPER = ("Reidemeister",)
+"""Words that stay capitals within a sentence."""
+
 
 def dimension_of(field: FieldInfo) -> Dimension | None:
     """What a field of a specification measures; None for names and counts."""
@@ -41,7 +44,8 @@ def sentence(spec: type[Spec], error: ValidationError) -> str:
         return _unknown_field(spec, name)
     if kind == "missing":
         wanted = (spec.model_fields[name].description or "").rstrip(".")
-        return f"{name} is missing; give a {wanted[:1].lower()}{wanted[1:]}"
+        begin = wanted[:1] if wanted.startswith(PROPER) else wanted[:1].lower()
+        return f"{name} is missing; give a {begin}{wanted[1:]}"
     if kind == "literal_error":
         choices = context["expected"].replace("'", "").replace(" or ", ", ").split(", ")
         near = difflib.get_close_matches(str(first["input"]), choices, n=1)

@@ -42,12 +42,16 @@ def test_profile_closes_the_distance() -> None:
     assert end[2] == pytest.approx(0.0, abs=1e-8)
 
 
-def test_error_of_the_curvature() -> None:
-    """By the derivative: 1 mm at d = 17.6 cm is 0.2 1/m."""
-    kappa, error = curvature_at(0.24, 0.17595, 1e-3)
+def test_range_of_the_curvature() -> None:
+    """By the derivative: 1 mm at d = 17.6 cm is 0.12 1/m; near a straight rod the range is one-sided."""
+    kappa, low, high = curvature_at(0.24, 0.17595, 1e-3)
     slope = (elastica(0.24, 0.17594).kappa_max - elastica(0.24, 0.17596).kappa_max) / 2e-5
-    assert error == pytest.approx(slope * 1e-3, rel=1e-3)
-    assert curvature_at(0.24, 0.17595) == (kappa, 0.0)
+    assert high - low == pytest.approx(2e-3 * slope, rel=1e-3)
+    assert low < kappa < high
+    assert curvature_at(0.24, 0.17595) == (kappa, kappa, kappa)
+    straight, low, high = curvature_at(0.24, 0.2395, 1e-3)
+    assert low == 0
+    assert high - straight < straight - low
 
 
 def test_straight_and_impossible() -> None:

@@ -97,13 +97,14 @@ def _of(length: float, parameter: float) -> Elastica:
     return Elastica(length, length * _ratio(parameter), k, 4.0 * k * K / length, (2.0 * K / math.pi) ** 2)
 
 
-def curvature_at(length: float, distance: float, error: float = 0.0) -> tuple[float, float]:
-    """Largest curvature [1/m] from an end-to-end distance [m], and its error from that of the distance."""
-    kappa = elastica(length, distance).kappa_max
-    if not error:
-        return kappa, 0.0
-    low, high = max(NARROWEST * length, distance - error), min(length, distance + error)
-    return kappa, 0.5 * abs(elastica(length, low).kappa_max - elastica(length, high).kappa_max)
+def curvature_at(length: float, distance: float, error: float = 0.0) -> tuple[float, float, float]:
+    """Largest curvature [1/m] of an end-to-end distance [m], and its range when that has an error.
+
+    Curvature is steep where the rod is nearly straight, so the range is not symmetric.
+    """
+    near, far = max(NARROWEST * length, distance - error), min(length, distance + error)
+    low, high = (elastica(length, d).kappa_max for d in (far, near))
+    return elastica(length, distance).kappa_max, low, high
 
 
 def _ratio(m: float) -> float:
