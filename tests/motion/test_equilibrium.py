@@ -7,7 +7,7 @@ import pytest
 
 from torsade import observables
 from torsade.errors import TorsadeError
-from torsade.motion.equilibrium import bent, bent_until, curvature_from_distance
+from torsade.motion.equilibrium import bent, bent_until, limit_curvature
 from torsade.motion.supports import Fiber
 
 UNIT = Fiber(1.0, 100, 1.0, 0.8)
@@ -77,16 +77,16 @@ def test_small_arches_are_sines() -> None:
         assert found.kappa_max == pytest.approx(2 * np.pi * np.sqrt(short), rel=max(1e-4, 2 * short))
 
 
-def test_curvature_from_distances_and_their_errors() -> None:
+def test_limit_curvatures_and_their_errors() -> None:
     """The range is where the distance may be, by the elastica: kappa falls from 5.0352 to 4.7179 to 4.3971.
 
     Rows d/L = 0.49, 0.54, 0.59 of the table of test_elastica.
     """
-    found = curvature_from_distance(Fiber(1.0, 400), 0.54, 0.0, 0.05)
+    found = limit_curvature(Fiber(1.0, 400), 0.54, 0.0, 0.05)
     assert found == pytest.approx((4.71794167824, 4.39707289197, 5.03517181293), rel=1e-4)
-    exact = curvature_from_distance(UNIT, 0.8, 1.0)
+    exact = limit_curvature(UNIT, 0.8, 1.0)
     assert exact.low == exact.value == exact.high
-    nearly = curvature_from_distance(UNIT, 0.999, 1.0, 0.01)
+    nearly = limit_curvature(UNIT, 0.999, 1.0, 0.01)
     assert nearly.low == 0.0 < nearly.value < nearly.high
 
 

@@ -25,7 +25,7 @@ from torsade.motion.supports import Fiber, Support, chain, controls_at, shape_al
 from torsade.motion.trust import minimise, newton
 from torsade.rod.elasticity import hinge_curvature
 
-__all__ = ["Bent", "Range", "bent", "bent_until", "curvature_from_distance"]
+__all__ = ["Bent", "Range", "bent", "bent_until", "limit_curvature"]
 
 PIVOT = Support("plane")
 """A grip of the twist device."""
@@ -228,9 +228,7 @@ class Range(NamedTuple):
     high: float
 
 
-def curvature_from_distance(
-    fiber: Fiber, end_distance: float, total_twist: float = 0.0, error: float = 0.0
-) -> Range:
+def limit_curvature(fiber: Fiber, end_distance: float, total_twist: float = 0.0, error: float = 0.0) -> Range:
     """Largest curvature of a fiber seen to break at an end distance [m], known within an error [m].
 
     The range is that between the two distances: curvature falls as the ends part, and steeply when the fiber
