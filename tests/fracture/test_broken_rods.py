@@ -213,3 +213,13 @@ def test_there_is_room_for_as_many_breaks_as_lambda_allows() -> None:
     assert most_breaks(a, 0.03) == 6  # 31.2 mm is the first multiple of 2.4 mm above 30 mm
     assert most_breaks(a, 0.0) == 99
     assert most_breaks(a, 0.12) == 0
+
+
+def test_a_rod_twisted_the_other_way_breaks_as_its_mirror_image() -> None:
+    left, right = (SnapTwist(twist=f"{sign}200 deg").broken()[0] for sign in ("-", ""))
+    for cascade in (left, right):
+        cascade.advance(3e-4)
+    np.testing.assert_allclose(left.lengths, right.lengths, atol=1e-12)
+    mirrored = left.motion.state.x * [1.0, 1.0, -1.0]
+    np.testing.assert_allclose(mirrored, right.motion.state.x, atol=1e-9)
+    np.testing.assert_allclose(-left.motion.state.omega, right.motion.state.omega, atol=1e-3)
