@@ -93,6 +93,16 @@ def test_a_file_says_the_same(tmp_path: Path) -> None:
     assert load_spec(tmp_path / "bent.toml") == BendTwist(end_distance=0.19, twist="270 deg")
 
 
+def test_the_angle_between_the_grips_in_place_of_the_twist() -> None:
+    """What the twist device is set to (thesis 3.11); the fiber's twist is a little less."""
+    by_twist = report(end_distance="19 cm", twist="270 deg")
+    by_grips = report(end_distance="19 cm", rotation=by_twist["end_rotation_rad"])
+    for key in ("twist_rad", "kappa_max_per_m", "thrust_N", "out_of_plane_m"):
+        assert by_grips[key] == pytest.approx(by_twist[key], rel=1e-7)
+    with pytest.raises(ts.TorsadeError, match="are both given"):
+        BendTwist(end_distance="19 cm", twist="1 deg", rotation="2 deg")
+
+
 @pytest.mark.parametrize(
     ("fields", "says"),
     [

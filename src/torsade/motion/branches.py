@@ -25,6 +25,11 @@ from torsade.motion.trust import imbalance, newton, settled, step
 __all__ = ["Path", "Point", "bifurcation", "carry", "fold", "follow", "switch"]
 
 SMALLEST_STEP = 1e-6
+
+LONGEST_AT_ONCE = 0.15, 0.7
+"""Up to which a path is taken in one step: the angle that edges turn by [rad], and the change of controls in
+units of B and L."""
+
 MOST_CORRECTIONS = 8
 
 
@@ -131,11 +136,6 @@ def fold(chain: Chain, path: Path, before: Point, after: Point) -> Point:
         else:
             now = found[0]
     return now
-
-
-LONGEST_AT_ONCE = 0.15, 0.7
-"""Up to which a path is taken in one step: the angle that edges turn by [rad], and the change of controls in
-units of B and L."""
 
 
 def carry(chain: Chain, shape: Shape, path: Path) -> Shape | None:

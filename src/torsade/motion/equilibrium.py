@@ -22,10 +22,10 @@ from torsade.motion.branches import Path, carry, fold, follow
 from torsade.motion.chain import Chain, Controls, Shape
 from torsade.motion.spectrum import lowest, unstable_modes
 from torsade.motion.supports import Fiber, Support, chain, controls_at, shape_along
-from torsade.motion.trust import minimise
+from torsade.motion.trust import minimise, newton
 from torsade.rod.elasticity import hinge_curvature
 
-__all__ = ["Bent", "Limits", "bent", "bent_until", "limit_curvature"]
+__all__ = ["Bent", "Range", "bent", "bent_until", "limit_curvature"]
 
 PIVOT = Support("plane")
 """A grip of the twist device."""
@@ -135,11 +135,19 @@ def _peak(values: Floats) -> float:
     return top - (after - before) ** 2 / (8.0 * bend) if bend < 0.0 else top
 
 
-def bent(fiber: Fiber, end_distance: float, total_twist: float = 0.0, near: Bent | None = None) -> Bent:
+def bent(
+    fiber: Fiber,
+    end_distance: float,
+    total_twist: float = 0.0,
+    near: Bent | None = None,
+    *,
+    rotation: float | None = None,
+) -> Bent:
     """The equilibrium at an end distance [m] and a total twist [rad], on the branch of the planar one.
 
     The untwisted fiber is bent first, in the plane of its end tangents and towards +y, then twisted. With an
-    equilibrium `near` of the same fiber the path starts there, and is shorter.
+    equilibrium `near` of the same fiber the path starts there, and is shorter. With `rotation` the angle
+    between the grips [rad] is given, in place of the twist.
 
     Raises
     ------
@@ -152,18 +160,25 @@ def bent(fiber: Fiber, end_distance: float, total_twist: float = 0.0, near: Bent
             f"ends {end_distance:g} m apart are not those of a bent fiber of length {fiber.length:g} m; give "
             "a distance from 0 to less than its length."
         )
-    if not math.isfinite(total_twist):
-        raise TorsadeError(f"a total twist of {total_twist:g} rad is none; give a finite angle.")
+    if not math.isfinite(total_twist if rotation is None else rotation):
+        raise TorsadeError(
+            f"a twist of {total_twist if rotation is None else rotation:g} rad is none; give a finite angle."
+        )
     d = max(d, NEAREST)
-    problem = _device(fiber.edges, fiber.C / fiber.B)
+    problem = _device(fiber.edges, fiber.C / fiber.B, rotation_held=rotation is not None)
+
+    def given(d: float, torque: float, angle: float) -> Controls:
+        return controls_at(problem, (d, 0.0, 0.0), torque=torque, rotation=angle)
+
     if near is None:
-        begin = controls_at(problem, (d, 0.0, 0.0))
+        begin = given(d, 0.0, 0.0)
         shape = minimise(problem, _arch(problem, d), begin)
     else:
-        begin = controls_at(problem, (near.end_distance / fiber.length, 0.0, 0.0), torque=near.shape.torque)
+        begin = given(near.end_distance / fiber.length, near.shape.torque, near.rotation)
         shape = near.shape
-    goal = controls_at(problem, (d, 0.0, 0.0), torque=problem.C * total_twist)
-    return _measured(fiber, problem, _followed(problem, shape, Path(begin, goal), total_twist), goal)
+    turned = 0.0 if rotation is None else rotation
+    path = Path(begin, given(d, problem.C * total_twist, turned))
+    return _measured(fiber, problem, _followed(problem, shape, path), path.stop)
 
 
 def bent_until(fiber: Fiber, kappa_max: float, total_twist: float = 0.0, near: Bent | None = None) -> Bent:
@@ -205,7 +220,7 @@ def bent_until(fiber: Fiber, kappa_max: float, total_twist: float = 0.0, near: B
     )
 
 
-class Limits(NamedTuple):
+class Range(NamedTuple):
     """A curvature that follows from a measured distance [1/m], and the range that its error leaves."""
 
     value: float
@@ -213,9 +228,7 @@ class Limits(NamedTuple):
     high: float
 
 
-def limit_curvature(
-    fiber: Fiber, end_distance: float, total_twist: float = 0.0, error: float = 0.0
-) -> Limits:
+def limit_curvature(fiber: Fiber, end_distance: float, total_twist: float = 0.0, error: float = 0.0) -> Range:
     """Largest curvature of a fiber seen to break at an end distance [m], known within an error [m].
 
     The range is that between the two distances: curvature falls as the ends part, and steeply when the fiber
@@ -228,12 +241,12 @@ def limit_curvature(
     """
     here = bent(fiber, end_distance, total_twist)
     if error == 0.0:
-        return Limits(here.kappa_max, here.kappa_max, here.kappa_max)
+        return Range(here.kappa_max, here.kappa_max, here.kappa_max)
     high = bent(fiber, max(end_distance - error, 0.0), total_twist, here).kappa_max
     far = end_distance + error
     straight = far > fiber.length * (1.0 - STRAIGHT)
     low = 0.0 if straight else bent(fiber, far, total_twist, here).kappa_max
-    return Limits(here.kappa_max, low, high)
+    return Range(here.kappa_max, low, high)
 
 
 def _device(edges: int, C: float, *, rotation_held: bool = False) -> Chain:
@@ -250,7 +263,7 @@ def _arch(problem: Chain, d: float) -> Shape:
     return shape_along(problem, np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle]))
 
 
-def _followed(problem: Chain, shape: Shape, path: Path, total_twist: float) -> Shape:
+def _followed(problem: Chain, shape: Shape, path: Path) -> Shape:
     """The shape at the end of a path, in one step if it is short."""
     at_once = carry(problem, shape, path)
     if at_once is not None:
@@ -262,13 +275,18 @@ def _followed(problem: Chain, shape: Shape, path: Path, total_twist: float) -> S
         if point.tangent.p <= 0.0:
             break
         before = point
-    if before is not None and point is not None:
-        before = fold(problem, path, before, point) if point.tangent.p <= 0.0 else before
+    if before is not None and point is not None and point.tangent.p <= 0.0:
+        before = fold(problem, path, before, point)
+        found = newton(problem, before.shape, path.stop) if before.p >= 1.0 else None
+        if found is not None:
+            return found[0]
     last = path.start if before is None else path.at(before.p)
-    snaps = math.degrees(last.torque / problem.C)
+    held = problem.rotation_held
+    what = "grips turned by" if held else "a total twist of"
+    asked, snaps = (math.degrees(c.rotation if held else c.torque / problem.C) for c in (path.stop, last))
     raise TorsadeError(
-        f"no arch holds a total twist of {math.degrees(total_twist):.5g} deg at an end distance of "
-        f"{path.stop.value[0]:.5g} lengths: there it snaps at {snaps:.4g} deg; give less twist."
+        f"no arch holds {what} {asked:.5g} deg at an end distance of {path.stop.value[0]:.5g} lengths: there "
+        f"it snaps at {snaps:.4g} deg; give less twist."
     )
 
 
@@ -301,8 +319,8 @@ def _force(problem: Chain, tangent: Floats, x: Floats, torque: float) -> Floats:
     """Force (3,) on the last end that balances moments best, M + x x F = const at all nodes x (n_nodes, 3).
 
     With M = B kb/lbar + M_t t. The reaction that holds the end of the discrete fiber is the exact slope of
-    its energy, and a little larger, since |kb| = 2 tan(phi/2) grows faster than the angle phi: by (kappa l)^2/4
-    in a sharp bend. Taken from moments the error is about ten times smaller.
+    its energy, and a little larger, since |kb| = 2 tan(phi/2) grows faster than the angle phi: by a share of
+    (kappa l)^2/4 in a sharp bend. Taken from moments the error is about ten times smaller.
     """
     a, b = tangent[:-1], tangent[1:]
     cosine = np.einsum("kc,kc->k", a, b)[:, None]

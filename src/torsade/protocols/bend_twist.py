@@ -28,7 +28,7 @@ class BendTwist(Still):
 
     The fiber is inextensible. Each grip turns freely about an axis across the line of the ends, and both axes
     are parallel: end tangents stay in one plane. `twist` is the fiber's own, spread evenly along it; the
-    angle between the grips is a little larger, and is reported.
+    angle between the grips is a little larger, and is reported; `rotation` gives that instead.
     """
 
     hints: ClassVar[Mapping[str, str]] = {
@@ -51,6 +51,9 @@ class BendTwist(Still):
         description="Distance of the fiber's ends from each other.", examples=["19 cm"]
     )
     twist: Angle = Field(0.0, description="Total twist of the fiber, right-handed when positive.")
+    rotation: Angle | None = Field(
+        None, description="Angle between the grips, in place of the fiber's own twist."
+    )
     material: str = Field(
         "spaghetti", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
     )
@@ -70,6 +73,11 @@ class BendTwist(Still):
 
     @model_validator(mode="after")
     def _bent(self) -> BendTwist:
+        if self.rotation is not None and self.twist != 0.0:
+            raise TorsadeError(
+                f"twist ({self.twist:g} rad) and rotation ({self.rotation:g} rad) are both given; give the "
+                "fiber's own, twist, or the angle between the grips, rotation"
+            )
         if self.E is not None:
             raise TorsadeError(
                 "this fiber does not stretch, so E has no part in it; give E_b, Young's modulus in bending"
@@ -98,7 +106,7 @@ class BendTwist(Still):
     def solve(self) -> Found:
         from torsade.motion.equilibrium import bent, limit_curvature
 
-        found = bent(self.fiber, self.end_distance, self.twist)
+        found = bent(self.fiber, self.end_distance, self.twist, rotation=self.rotation)
         a, state = found.assembled()
         last = self.nodes - 1
         numbers: dict[str, Any] = {
@@ -114,8 +122,10 @@ class BendTwist(Still):
             "least_stiffness_N": found.stiffness(),
         }
         if self.end_distance_error is not None:
-            limits = limit_curvature(self.fiber, self.end_distance, self.twist, self.end_distance_error)
-            numbers["kappa_max_range_per_m"] = [limits.low, limits.high]
+            within = limit_curvature(
+                self.fiber, self.end_distance, found.total_twist, self.end_distance_error
+            )
+            numbers["kappa_max_range_per_m"] = [within.low, within.high]
         frame: dict[str, float | Floats] = {
             "position": state.x,
             "curvature": found.kappa,
@@ -133,7 +143,7 @@ class BendTwist(Still):
             "protocol": "bend-twist",
             "length_m": spec["length"],
             "end_distance_m": spec["end_distance"],
-            "twist_rad": spec["twist"],
+            "twist_rad": float(data["twist"].values[0]),
             "kappa_max_per_m": attrs["kappa_max_per_m"],
             "kappa_max_range_per_m": attrs.get("kappa_max_range_per_m"),
             "kappa_middle_per_m": attrs["kappa_middle_per_m"],
