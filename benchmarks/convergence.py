@@ -11,8 +11,8 @@ from typing import Any
 
 from benchmarks import common
 from torsade.motion.overdamped import Stepping
-from torsade.protocols.pulled import STANDARD_SPACING
 from torsade.protocols.prison_escape import PrisonEscape
+from torsade.protocols.pulled import STANDARD_SPACING
 
 PAGE = Path(__file__).parents[1] / "docs" / "convergence.md"
 SPACING_LIMIT, TOLERANCE_LIMIT = 0.03, 0.01
