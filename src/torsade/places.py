@@ -30,6 +30,11 @@ __all__ = [
     "writing",
 ]
 
+BUSY = (
+    "{out} is being written by {owner}; wait for it or give another name, or remove {lock} when no such run "
+    "goes on"
+)
+
 
 def part_of(out: Path) -> Path:
     """Where a result is while it grows."""
@@ -109,6 +114,11 @@ class Lock:
 
     A lock whose process has ended is taken over.
 
+    Parameters
+    ----------
+    out : what is to be written
+    busy : what to say of {out} when {owner} writes it and {lock} is the name of the lock
+
     Raises
     ------
     TorsadeError
@@ -117,15 +127,14 @@ class Lock:
 
     _held: set[Path] = set()  # noqa: RUF012 - of the whole process
 
-    def __init__(self, out: Path) -> None:
+    def __init__(self, out: Path, busy: str = BUSY) -> None:
         self._path = out.resolve().with_name(out.name + ".lock")
         with writing(self._path):
             while not self._made():
                 owner = self._owner()
                 if owner is not None:
                     raise TorsadeError(
-                        f"{str(out)!r} is being written by {owner}; wait for it or give another name, or "
-                        f"remove {self._path.name!r} when no such run goes on"
+                        busy.format(out=repr(str(out)), owner=owner, lock=repr(self._path.name))
                     )
                 self._path.unlink(missing_ok=True)
         self._held.add(self._path)

@@ -19,79 +19,18 @@ from torsade import __version__, places, store
 from torsade.arrays import Floats
 from torsade.errors import TorsadeError, counted, quoted
 from torsade.results import Result
+from torsade.variables import SAMPLE, SINGLE_PRECISION, VARIABLES
 
-__all__ = ["BYTES_PER_NODE", "SAMPLE", "VARIABLES", "Recording"]
+__all__ = ["SAME_VERSIONS", "Recording", "versions"]
 
 FLUSH_EVERY = 0.5
 """Least time between writes to disk [s]: frames that come faster are written together."""
 
-VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
-    "time": (("time",), "s", "time"),
-    "separation": (("time",), "m", "pulled end from clamped end, along the pull"),
-    "sample_time": (("sample",), "s", "times between frames, for numbers that do not depend on frames"),
-    "sample_separation": (("sample",), "m", "separation at the times of samples"),
-    "pull_speed": (("time",), "m/s", "mean speed of parting since the frame before"),
-    "compression": (("time",), "N", "sum over all edges of the contact forces on them"),
-    "end_to_end": (("time",), "m", "distance of the two ends"),
-    "length": (("time",), "m", "present length of the fiber"),
-    "h_kappa_max": (("time",), "", "largest curvature, times the radius"),
-    "total_twist": (("time",), "rad", "twist of the fiber"),
-    "max_log_strain": (("time",), "", "largest log(1 + sqrt(eps:eps))"),
-    "twist": (("time", "fiber"), "rad", "twist of each fiber"),
-    "curvature": (("time", "node"), "1/m", "curvature of the centerline"),
-    "displacement": (("time",), "m", "how far moved ends have gone"),
-    "crossings": (("time",), "", "crossings seen along z"),
-    "energy_stretch": (("time",), "J", "stretch energy"),
-    "energy_bend": (("time",), "J", "bending energy"),
-    "energy_twist": (("time",), "J", "twist energy"),
-    "energy_contact": (("time",), "J", "contact energy"),
-    "external_work": (("time",), "J", "work done on the fibers since the start"),
-    "dissipation": (("time",), "J", "energy lost to drag since the start"),
-    "position": (("time", "node", "space"), "m", "node positions"),
-    "log_strain": (("time", "node"), "", "log(1 + sqrt(eps:eps)) on the surface"),
-    "velocity": (("time", "node", "space"), "m/s", "node velocities; zero at the start"),
-    "self_torque": (("time", "edge"), "N", "torque by collision drag per rest length, without own spin"),
-    "rotation_rate": (("time",), "rad/s", "rate at which the knot turns about the pull"),
-    "rotation": (("time",), "rad", "by how much the knot has turned about the pull"),
-    "strain_stretch": (("time", "node"), "", "stretch |x'| - 1"),
-    "strain_bend": (("time", "node"), "", "strain of bending on the surface, h kappa"),
-    "strain_twist": (("time", "node"), "", "strain of twist on the surface, h |theta'|/sqrt(2)"),
-    "end_distance": (("time",), "m", "distance of the two ends of the rod"),
-    "kappa_max": (("time",), "1/m", "largest curvature"),
-    "energy_kinetic": (("time",), "J", "kinetic energy of the centerline"),
-    "energy_spin": (("time",), "J", "kinetic energy of spin"),
-    "energy_released": (("time",), "J", "energy lost in breaks since the start"),
-    "piece_start": (
-        ("time", "piece_bound"),
-        "",
-        "first node of every piece; empty where pieces are not there",
-    ),
-    "twist_density": (("time", "node"), "rad/m", "twist density, 0 at ends"),
-    "stress": (("time", "node"), "Pa", "stress by the criterion chosen, 0 at ends"),
-    "angle": (("time",), "rad", "angle that the lower end has turned"),
-    "sample_angle": (("sample",), "rad", "angle at the times of samples"),
-}
-"""Dimensions, SI unit and meaning of every recorded variable."""
-
-STRAINED = (
-    "position",
-    "log_strain",
-    "strain_stretch",
-    "strain_bend",
-    "strain_twist",
-    "velocity",
-    "self_torque",
-)
-SINGLE_PRECISION = (*STRAINED, "twist_density", "stress")
-
-BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in STRAINED)
-"""What a frame takes for every node, and the edge that comes with it: in no protocol more."""
-
-SAMPLE = "sample_"
-"""Beginning of the names of samples."""
-
 PROGRESS = ("done", "sampled", "wall", "steps")
 """What the restart file holds besides what the motion saves."""
+
+SAME_VERSIONS = ("torsade", "numba", "numpy")
+"""A run goes on with these in the versions that it was begun with: others may round otherwise."""
 
 Frame = Mapping[str, "float | Floats"]
 
@@ -125,7 +64,7 @@ class Recording:
             for name in names
         }
         self._fixed = dict(fixed)
-        self.attrs = attrs | {"created": _now(), "versions": _versions(), "status": "running"}
+        self.attrs = attrs | {"created": _now(), "versions": versions(), "status": "running"}
         self.done = self.sampled = 0
         self.saved: dict[str, NDArray[Any]] | None = None
         self._restart: tuple[str, ...] = ()
@@ -394,7 +333,7 @@ def _same_run(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) ->
 
 def _same_versions(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) -> None:
     """Refuse to mix what different versions compute."""
-    for name in ("torsade", "numba", "numpy"):
+    for name in SAME_VERSIONS:
         now, then = asked["versions"][name], found["versions"].get(name)
         if now != then:
             raise TorsadeError(
@@ -412,6 +351,7 @@ def _now() -> str:
     return datetime.now(UTC).isoformat(timespec="microseconds")
 
 
-def _versions() -> dict[str, str]:
+def versions() -> dict[str, str]:
+    """Of what results are computed with."""
     packages = {name: version(name) for name in ("numpy", "numba", "zarr")}
     return {"torsade": __version__, "python": platform.python_version()} | packages

@@ -9,7 +9,8 @@ all fibers, stored in single precision. Samples, `sample_time (sample)` [s] and 
 
 The attributes hold `protocol`, `spec` and `model` (JSON: what was asked, and the numbers that it meant),
 `knot` where there is one, `radius` [m], `versions`, `created`, `status`, `done` (frames), `sampled`, `steps`,
-`wall_s`, and what the protocol concludes, such as `c_f`.
+`wall_s`, and what the protocol concludes, such as `c_f`. A run written as it went on also has
+`chunks`, the number of files that hold each variable.
 """
 
 from __future__ import annotations

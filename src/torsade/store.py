@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "append",
+    "check_restart",
+    "chunk_files",
     "complete",
     "create",
     "has_restart",
@@ -108,13 +110,37 @@ def has_restart(part: Path) -> bool:
 def read_restart(part: Path, wanted: Iterable[str]) -> dict[str, NDArray[Any]]:
     """The arrays of the restart file, those wanted among them."""
     try:
-        with (part / RESTART).open("rb") as raw, np.load(raw, allow_pickle=False) as file:
-            return {name: file[name] for name in wanted}
+        return _restart(part, wanted)
     except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, zlib.error):
         raise TorsadeError(
             f"the state to go on from in {str(part / RESTART)!r} is damaged; open {str(part)!r} for the "
             "frames that there are, or give --overwrite (overwrite=True) in place of resume to begin anew"
         ) from None
+
+
+def check_restart(part: Path) -> None:
+    """Read all of the restart file.
+
+    Raises
+    ------
+    OSError, ValueError, EOFError, zipfile.BadZipFile, zlib.error
+        When it is damaged.
+    """
+    _restart(part, None)
+
+
+def _restart(part: Path, wanted: Iterable[str] | None) -> dict[str, NDArray[Any]]:
+    with (part / RESTART).open("rb") as raw, np.load(raw, allow_pickle=False) as file:
+        return {name: file[name] for name in (file.files if wanted is None else wanted)}
+
+
+def chunk_files(path: Path) -> dict[str, int]:
+    """How many files hold the numbers of every variable of a result on disk.
+
+    Chunks of zeros have none: whoever reads cannot tell one that was lost.
+    """
+    arrays = (found.parent for found in sorted(path.glob("*/zarr.json")))
+    return {array.name: sum(p.is_file() for p in array.rglob("*")) - 1 for array in arrays}
 
 
 def complete(part: Path, out: Path, sizes: Mapping[str, int], changed: Mapping[str, Any]) -> None:
@@ -131,7 +157,7 @@ def complete(part: Path, out: Path, sizes: Mapping[str, int], changed: Mapping[s
             size = sizes.get(str(names[0])) if names else None
             if size not in (None, array.shape[0]):
                 array.resize((size, *array.shape[1:]))
-        group.attrs.update(dict(changed))
+        group.attrs.update(dict(changed) | {"chunks": chunk_files(part)})
         zarr.consolidate_metadata(str(part))
         replace(part, out)
         (out / RESTART).unlink(missing_ok=True)

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+import json
+import os
+import shutil
+import signal
+
 import numpy as np
 import pytest
 
 from torsade.errors import TorsadeError
 from torsade.figures.base import Table
 from torsade.figures.runs import results, run_path
+from torsade.figures.stored import opened, whole
+from torsade.places import Lock
 from torsade.protocols import PrisonEscape
 
 
@@ -67,7 +74,158 @@ def test_a_failed_run_does_not_lose_the_others(tmp_path, workers):
 def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(TorsadeError, match="cannot make the folder"):
-        results({}, tmp_path / "file" / "runs")
+        results({"reef": short("reef")}, tmp_path / "file" / "runs")
+    with pytest.raises(TorsadeError, match=r"'.*file' is a file, not a folder; remove it, or give"):
+        results({"reef": short("reef")}, tmp_path / "file")
+
+
+def test_nothing_to_run_needs_no_folder(tmp_path):
+    (tmp_path / "runs").write_text("mine")
+    assert results({}, tmp_path / "runs") == results({}, tmp_path / "other") == {}
+    assert [path.name for path in tmp_path.iterdir()] == ["runs"]
+
+
+@pytest.fixture(scope="module")
+def stored_reef(tmp_path_factory):
+    """A folder with a run, and the run."""
+    folder = tmp_path_factory.mktemp("stored")
+    return folder, results({"reef": short("reef")}, folder, workers=1)["reef"]
+
+
+def a_chunk(path, name):
+    return next(found for found in sorted((path / name / "c").rglob("*")) if found.is_file())
+
+
+def spoil_chunk(path):
+    chunk = a_chunk(path, "position")
+    chunk.write_bytes(chunk.read_bytes()[:40] + b"x" * 40)
+
+
+def spoil_attribute(path):
+    attributes = json.loads((path / "zarr.json").read_text())
+    attributes["attributes"]["done"] = "many"
+    (path / "zarr.json").write_text(json.dumps(attributes))
+
+
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        spoil_chunk,
+        lambda path: shutil.rmtree(path / "separation"),
+        lambda path: a_chunk(path, "velocity").unlink(),
+        lambda path: (path / "twist" / "zarr.json").write_text("{"),
+        spoil_attribute,
+    ],
+)
+def test_a_damaged_run_is_run_anew(tmp_path, stored_reef, spoil):
+    """Whatever is damaged, nothing else than the numbers of the whole run is ever given."""
+    folder, reef = stored_reef
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
+    path = run_path("reef", short("reef"), tmp_path)
+    assert whole(path) is not None
+    spoil(path)
+    assert whole(path) is None
+
+    found = results({"reef": short("reef")}, tmp_path, workers=1)["reef"]
+    assert found.dataset.attrs["created"] != reef.dataset.attrs["created"]
+    assert found.dataset.attrs["chunks"] == reef.dataset.attrs["chunks"]
+    for name, values in reef.dataset.variables.items():
+        assert np.array_equal(values, found.dataset[name], equal_nan=values.dtype.kind == "f"), name
+
+
+def test_a_run_that_cannot_be_read_later_is_named(tmp_path, stored_reef):
+    folder, _ = stored_reef
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
+    path = run_path("reef", short("reef"), tmp_path)
+    spoil_chunk(path)
+    with pytest.raises(TorsadeError, match=r"reef.*zarr' cannot be read \(.*\); remove it, or give --fresh"):
+        opened(path)
+
+
+def interrupted(path, keep):
+    """A run that is stopped at its first frame."""
+    from torsade.protocols.patience import Interrupted
+
+    def stop(share, note):
+        if share > 0.4:
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(Interrupted):
+        short("reef").run(stop, path)
+    part = path.with_name(path.name + ".part")
+    assert part.is_dir()
+    if not keep:
+        (part / "restart.npz").write_bytes(b"x")
+    return json.loads((part / "zarr.json").read_text())["attributes"]["created"]
+
+
+@pytest.mark.parametrize(("keep", "fresh"), [(True, False), (True, True), (False, False)])
+def test_a_partial_run_is_gone_on_with_unless_it_cannot_be(tmp_path, stored_reef, keep, fresh):
+    begun = interrupted(run_path("reef", short("reef"), tmp_path), keep)
+    found = results({"reef": short("reef")}, tmp_path, workers=1, fresh=fresh)["reef"]
+    assert (found.dataset.attrs["created"] == begun) is (keep and not fresh)
+    assert np.array_equal(found.dataset["position"], stored_reef[1].dataset["position"])
+    assert len(list(tmp_path.iterdir())) == 1
+
+
+def make_empty(path):
+    path.mkdir()
+
+
+def make_other(path):
+    path.mkdir()
+    (path / "zarr.json").write_text('{"attributes": {}}')
+
+
+def make_bad(path):
+    path.mkdir()
+    (path / "zarr.json").write_text("{")
+
+
+@pytest.mark.parametrize("fresh", [False, True])
+@pytest.mark.parametrize("ending", ["", ".part"])
+@pytest.mark.parametrize("make", [make_empty, make_other, make_bad, lambda path: path.write_text("mine")])
+def test_what_is_not_a_run_is_left_alone(tmp_path, make, ending, fresh):
+    path = run_path("reef", short("reef"), tmp_path)
+    place = path.with_name(path.name + ending)
+    make(place)
+    with pytest.raises(TorsadeError) as refused:
+        results({"reef": short("reef")}, tmp_path, workers=1, fresh=fresh)
+    assert str(refused.value) == f"{str(place)!r} exists and is not a run; remove it"
+    assert list(tmp_path.iterdir()) == [place]
+
+
+def test_two_commands_do_not_make_runs_in_one_folder(tmp_path, stored_reef):
+    folder, _ = stored_reef
+    # This process stands for another one.
+    lock = Lock(folder)
+    try:
+        with pytest.raises(TorsadeError) as refused:
+            results({"reef": short("reef"), "thief": short("thief")}, folder, workers=1)
+        expected = (
+            f"another command is making runs in {str(folder)!r} (process {os.getpid()}); wait for it or"
+        )
+        assert str(refused.value) == f"{expected} give another --out"
+        assert list(results({"reef": short("reef")}, folder)) == ["reef"]  # nothing is to be made
+    finally:
+        lock.release()
+
+
+def test_ctrl_c_says_how_many_runs_are_stored(tmp_path, stored_reef):
+    """Raised while the first of two missing runs goes on; the one before is kept."""
+    folder, _ = stored_reef
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
+    specs = {"reef": short("reef"), "thief": short("thief")}
+
+    def stop(share, note):
+        if note == "1 run to do":
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        results(specs, tmp_path, workers=1, progress=stop)
+    said = f"interrupted; 1 of 2 runs is stored in {str(tmp_path)!r}; the same command goes on"
+    assert str(stopped.value) == said
+    assert len(list(tmp_path.iterdir())) == 1  # neither a lock nor anything begun
 
 
 def test_tables_leave_out_what_is_not_known(tmp_path):

@@ -7,6 +7,7 @@ import json
 import multiprocessing
 import os
 import re
+import signal
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from functools import lru_cache
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING
 
 from torsade import places
 from torsade.errors import TorsadeError, counted, reason_of
+from torsade.figures import stored
 from torsade.results import Result
 
 if TYPE_CHECKING:
@@ -24,6 +26,8 @@ __all__ = ["make_folder", "results", "run_path"]
 
 DRAWING = ("view", "figures", "cli")
 """Parts of the package that no number depends on."""
+
+BUSY = "another command is making runs in {out} ({owner}); wait for it or give another --out"
 
 
 def results(
@@ -36,12 +40,13 @@ def results(
 ) -> dict[str, Result]:
     """The results of specifications, by label: read where the folder has them, run where it has not.
 
-    A run that was interrupted is gone on with. Results do not depend on the number of workers.
+    A run that was interrupted is gone on with; one that is damaged is run anew. Results do not depend on the
+    number of workers.
 
     Parameters
     ----------
     specs : what to run, by label
-    folder : where results are kept, made when missing
+    folder : where results are kept, made when missing and something has to be run
     workers : processes at a time; by default as many as there are cores
     fresh : run all anew
     progress : called as runs come to their end
@@ -49,18 +54,61 @@ def results(
     Raises
     ------
     TorsadeError
-        When the folder cannot be written, or a run fails; what is complete by then is kept.
+        When the folder cannot be written, something in it has the name of a run and is none, another command
+        makes runs in it, or a run fails; what is complete by then is kept.
+    KeyboardInterrupt
+        On Ctrl-C, saying how many runs are stored.
     """
+    if not specs:
+        return {}
     tell = progress or (lambda share, note: None)
     make_folder(folder)
     paths = {label: run_path(label, spec, folder) for label, spec in specs.items()}
-    missing = {label: spec for label, spec in specs.items() if fresh or not _is_complete(paths[label])}
-    done = len(specs) - len(missing)
-    tell(done / max(1, len(specs)), _note(len(missing)))
+    for path in paths.values():
+        stored.check_ours(path)
+    try:
+        found = {} if fresh else _found(paths)
+        if len(found) < len(specs):
+            lock = places.Lock(folder, busy=BUSY)
+            try:
+                found |= {} if fresh else _found({k: p for k, p in paths.items() if k not in found})
+                _run_missing({k: s for k, s in specs.items() if k not in found}, paths, fresh, workers, tell)
+            finally:
+                lock.release()
+        else:
+            tell(1.0, _note(0))
+        return {label: found.get(label) or stored.opened(path) for label, path in paths.items()}
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(_kept(paths, folder, fresh)) from None
+
+
+def _found(paths: Mapping[str, Path]) -> dict[str, Result]:
+    """The runs that are stored whole, by label."""
+    every = {label: stored.whole(path) for label, path in paths.items()}
+    return {label: result for label, result in every.items() if result is not None}
+
+
+def _run_missing(
+    missing: Mapping[str, Spec],
+    paths: Mapping[str, Path],
+    fresh: bool,
+    workers: int | None,
+    tell: Progress,
+) -> None:
+    """Run what is not stored, telling what share of all is."""
+    done = len(paths) - len(missing)
+    tell(done / len(paths), _note(len(missing)))
     for label in _run_all(missing, paths, fresh, workers or os.cpu_count() or 1):
         done += 1
-        tell(done / len(specs), label)
-    return {label: Result.open(path) for label, path in paths.items()}
+        tell(done / len(paths), label)
+
+
+def _kept(paths: Mapping[str, Path], folder: Path, fresh: bool) -> str:
+    """What to say when all is interrupted."""
+    complete = sum(stored.is_there(path) for path in paths.values())
+    again = "the same command without --fresh goes on" if fresh else "the same command goes on"
+    are = "is" if complete == 1 else "are"
+    return f"interrupted; {complete} of {counted(len(paths), 'run')} {are} stored in {str(folder)!r}; {again}"
 
 
 def make_folder(folder: Path) -> None:
@@ -71,6 +119,8 @@ def make_folder(folder: Path) -> None:
     TorsadeError
         When that cannot be done.
     """
+    if folder.is_file():
+        raise TorsadeError(f"{str(folder)!r} is a file, not a folder; remove it, or give another --out")
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -96,10 +146,6 @@ def _sources() -> str:
         if path.suffix in (".py", ".json") and parts[0] not in DRAWING:
             digest.update("/".join(parts).encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()
-
-
-def _is_complete(path: Path) -> bool:
-    return (places.attributes(path) or {}).get("status") == "complete"
 
 
 def _note(missing: int) -> str:
@@ -145,8 +191,9 @@ def _outcomes(
                 yield _run({label: one}, fresh)
         return
     # Fresh interpreters: forking one that has threads, as compiled kernels do, can hang.
-    with ProcessPoolExecutor(min(workers, len(jobs)), multiprocessing.get_context("spawn")) as pool:
-        waiting = [pool.submit(_run, job, fresh) for job in jobs]
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(min(workers, len(jobs)), context, initializer=_wait) as pool:
+        waiting = [pool.submit(_run_apart, job, fresh) for job in jobs]
         try:
             for future in as_completed(waiting):
                 yield future.result()
@@ -154,12 +201,29 @@ def _outcomes(
             pool.shutdown(cancel_futures=True)
 
 
+def _wait() -> None:
+    """Leave Ctrl-C to whoever waits for this process, while it has nothing to do."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _run_apart(job: Mapping[str, tuple[Spec, Path]], fresh: bool) -> dict[str, str | None]:
+    """Runs in a process of their own, which Ctrl-C stops."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        return _run(job, fresh)
+    finally:
+        _wait()
+
+
 def _run(job: Mapping[str, tuple[Spec, Path]], fresh: bool) -> dict[str, str | None]:
     """Runs, on disk, and what failed of each."""
     failed: dict[str, str | None] = {}
     for label, (spec, path) in job.items():
+        part = places.part_of(path)
+        # What is complete and yet to be run is damaged.
+        anew = fresh or path.exists() or (part.exists() and not stored.goes_on(part))
         try:
-            spec.run(out=path, resume=not fresh, overwrite=fresh)
+            spec.run(out=path, resume=not anew, overwrite=anew)
             failed[label] = None
         except TorsadeError as error:
             failed[label] = str(error)

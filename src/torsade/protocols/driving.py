@@ -15,8 +15,9 @@ from torsade.arrays import Floats
 from torsade.errors import TorsadeError
 from torsade.motion.moving import Motion, Outcome
 from torsade.protocols.patience import Interrupted, Patience
-from torsade.recording import SAMPLE, Recording
+from torsade.recording import Recording
 from torsade.results import Result
+from torsade.variables import SAMPLE
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Driven, Progress, Trial

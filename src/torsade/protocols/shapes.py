@@ -8,7 +8,7 @@ from torsade.centerline import Centerline, check
 from torsade.curve import length, resample
 from torsade.errors import TorsadeError
 from torsade.files import read_centerline
-from torsade.recording import BYTES_PER_NODE
+from torsade.variables import BYTES_PER_NODE
 
 if TYPE_CHECKING:
     from torsade.protocols.knotted import Knotted

@@ -25,7 +25,7 @@ class Found(NamedTuple):
     Attributes
     ----------
     assembly : the fibers
-    frame : what is recorded of it, by names in `torsade.recording.VARIABLES`
+    frame : what is recorded of it, by names in `torsade.variables.VARIABLES`
     numbers : what belongs to it as a whole
     """
 

@@ -1,0 +1,82 @@
+"""Stored runs: whether one is whole and can be used, partial and can be gone on with, or not a run at all."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import numpy as np
+
+from torsade import places, recording, store
+from torsade.errors import TorsadeError
+from torsade.results import Result
+
+__all__ = ["check_ours", "goes_on", "is_there", "opened", "whole"]
+
+
+def check_ours(path: Path) -> None:
+    """Refuse what stands in the place of a run, or of a growing one, and is not one.
+
+    Raises
+    ------
+    TorsadeError
+        When something there is not a run: it is never replaced.
+    """
+    for place in (path, places.part_of(path)):
+        if os.path.lexists(place) and places.attributes(place) is None:
+            raise TorsadeError(f"{str(place)!r} exists and is not a run; remove it")
+
+
+def is_there(path: Path) -> bool:
+    """Whether a run is stored that came to its end, damaged or not."""
+    return (places.attributes(path) or {}).get("status") == "complete"
+
+
+def whole(path: Path) -> Result | None:
+    """A stored run that came to its end, every number of it read; None where there is none, or damage."""
+    if not is_there(path):
+        return None
+    try:
+        # A file that is missing would be read as zeros.
+        noted = (places.attributes(path) or {}).get("chunks")
+        return _read(path) if noted == store.chunk_files(path) else None
+    except Exception:  # whatever the readers of damaged files stumble over
+        return None
+
+
+def goes_on(part: Path) -> bool:
+    """Whether a growing run can be read and be gone on with by these versions."""
+    found = places.attributes(part) or {}
+    try:
+        if found["status"] != "complete" and store.has_restart(part):
+            store.check_restart(part)
+        _read(part)
+        now = recording.versions()
+        return all(found["versions"][name] == now[name] for name in recording.SAME_VERSIONS)
+    except Exception:
+        return False
+
+
+def opened(path: Path) -> Result:
+    """A stored run.
+
+    Raises
+    ------
+    TorsadeError
+        When it cannot be read.
+    """
+    try:
+        return _read(path)
+    except Exception as error:
+        reason = " ".join(str(error).split()).rstrip(".")[:120] or type(error).__name__
+        raise TorsadeError(
+            f"the run {str(path)!r} cannot be read ({reason}); remove it, or give --fresh to run it anew"
+        ) from None
+
+
+def _read(path: Path) -> Result:
+    """A run, after all of it has been read once."""
+    result = Result.open(path)
+    for variable in result.dataset.variables.values():
+        np.asarray(variable)
+    return result

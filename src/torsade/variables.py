@@ -1,0 +1,73 @@
+"""What is recorded: every variable of a result with its dimensions, its SI unit and what it means."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+__all__ = ["BYTES_PER_NODE", "SAMPLE", "SINGLE_PRECISION", "VARIABLES"]
+
+VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "time": (("time",), "s", "time"),
+    "separation": (("time",), "m", "pulled end from clamped end, along the pull"),
+    "sample_time": (("sample",), "s", "times between frames, for numbers that do not depend on frames"),
+    "sample_separation": (("sample",), "m", "separation at the times of samples"),
+    "pull_speed": (("time",), "m/s", "mean speed of parting since the frame before"),
+    "compression": (("time",), "N", "sum over all edges of the contact forces on them"),
+    "end_to_end": (("time",), "m", "distance of the two ends"),
+    "length": (("time",), "m", "present length of the fiber"),
+    "h_kappa_max": (("time",), "", "largest curvature, times the radius"),
+    "total_twist": (("time",), "rad", "twist of the fiber"),
+    "max_log_strain": (("time",), "", "largest log(1 + sqrt(eps:eps))"),
+    "twist": (("time", "fiber"), "rad", "twist of each fiber"),
+    "curvature": (("time", "node"), "1/m", "curvature of the centerline"),
+    "displacement": (("time",), "m", "how far moved ends have gone"),
+    "crossings": (("time",), "", "crossings seen along z"),
+    "energy_stretch": (("time",), "J", "stretch energy"),
+    "energy_bend": (("time",), "J", "bending energy"),
+    "energy_twist": (("time",), "J", "twist energy"),
+    "energy_contact": (("time",), "J", "contact energy"),
+    "external_work": (("time",), "J", "work done on the fibers since the start"),
+    "dissipation": (("time",), "J", "energy lost to drag since the start"),
+    "position": (("time", "node", "space"), "m", "node positions"),
+    "log_strain": (("time", "node"), "", "log(1 + sqrt(eps:eps)) on the surface"),
+    "velocity": (("time", "node", "space"), "m/s", "node velocities; zero at the start"),
+    "self_torque": (("time", "edge"), "N", "torque by collision drag per rest length, without own spin"),
+    "rotation_rate": (("time",), "rad/s", "rate at which the knot turns about the pull"),
+    "rotation": (("time",), "rad", "by how much the knot has turned about the pull"),
+    "strain_stretch": (("time", "node"), "", "stretch |x'| - 1"),
+    "strain_bend": (("time", "node"), "", "strain of bending on the surface, h kappa"),
+    "strain_twist": (("time", "node"), "", "strain of twist on the surface, h |theta'|/sqrt(2)"),
+    "end_distance": (("time",), "m", "distance of the two ends of the rod"),
+    "kappa_max": (("time",), "1/m", "largest curvature"),
+    "energy_kinetic": (("time",), "J", "kinetic energy of the centerline"),
+    "energy_spin": (("time",), "J", "kinetic energy of spin"),
+    "energy_released": (("time",), "J", "energy lost in breaks since the start"),
+    "piece_start": (
+        ("time", "piece_bound"),
+        "",
+        "first node of every piece; empty where pieces are not there",
+    ),
+    "twist_density": (("time", "node"), "rad/m", "twist density, 0 at ends"),
+    "stress": (("time", "node"), "Pa", "stress by the criterion chosen, 0 at ends"),
+    "angle": (("time",), "rad", "angle that the lower end has turned"),
+    "sample_angle": (("sample",), "rad", "angle at the times of samples"),
+}
+"""Dimensions, SI unit and meaning of every recorded variable."""
+
+STRAINED = (
+    "position",
+    "log_strain",
+    "strain_stretch",
+    "strain_bend",
+    "strain_twist",
+    "velocity",
+    "self_torque",
+)
+SINGLE_PRECISION = (*STRAINED, "twist_density", "stress")
+"""Variables stored as 32-bit floats."""
+
+BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in STRAINED)
+"""What a frame takes for every node, and the edge that comes with it: in no protocol more."""
+
+SAMPLE = "sample_"
+"""Beginning of the names of samples."""
