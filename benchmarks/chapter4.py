@@ -20,8 +20,8 @@ from benchmarks import common
 from torsade.figures import bends, figure_4_1, rules
 from torsade.figures.base import Choice, Preset, Table
 from torsade.figures.runs import results
-from torsade.protocols.base import PUBLISHED_STEP, STANDARD_SPACING
 from torsade.protocols.prison_escape import PrisonEscape
+from torsade.protocols.pulled import PUBLISHED_STEP, STANDARD_SPACING
 
 PAGE = Path(__file__).parents[1] / "docs" / "chapter-4.md"
 ALLOWED = 60.0
@@ -37,6 +37,8 @@ REFINED: Mapping[str, tuple[Preset, dict[str, float]]] = {
 ORDERS = (
     ("granny", "grief", 1.0),
     ("reef", "thief", 1.0),
+    ("reef", "granny", 1.0),
+    ("thief", "grief", 1.0),
     ("zeppelin14", "alpine13", 1.0),
     ("hunter14", "hunter13", 2.0),
     ("hunter23", "hunter13", 2.0),
@@ -80,14 +82,14 @@ def knots(rows: Rows) -> list[str]:
 
 def bends_text(rows: Rows, choice: Choice) -> str:
     """Counts of all bends, and what is measured with each preset."""
-    heads = ["bend", "pulled", "N", "Wr", "τ", "Γ", "Γ, drawings", "Wh"]
+    heads = ["bend", "pulled", "N", "N, fewest", "Wr", "τ", "Γ", "Γ, drawings", "Wh"]
     for preset in choice.presets:
         heads += [f"c_f, {preset}", "slips, s", "ΣF, N"]
     body = []
     for knot in knots(rows):
         row = rows[knot, choice.presets[0]]
         least, most = (f"{row[name]:.3g}" for name in ("Gamma_least", "Gamma_greatest"))
-        line = [knot, row["pulled"], row["N"], row["Wr"], row["tau"], row["Gamma"]]
+        line = [knot, row["pulled"], row["N"], row["N_fewest"], row["Wr"], row["tau"], row["Gamma"]]
         line += [least if least == most else f"{least} to {most}", row["Whitney"]]
         for preset in choice.presets:
             of = rows[knot, preset]
@@ -104,7 +106,7 @@ def shapes_text(rows: Rows, choice: Choice) -> str:
     words |= {"log_strain_max": "largest log strain", "rotation_rad": "rotation, rad"}
     heads = ["bend", *(f"{words[k]}, {preset}" for preset in choice.presets for k in shown)]
     body = [
-        [knot, *(_fixed(rows[knot, p][k], n) for p in choice.presets for k, n in shown.items())]
+        [_marked(knot), *(_fixed(rows[knot, p][k], n) for p in choice.presets for k, n in shown.items())]
         for knot in knots(rows)
     ]
     return common.table(heads, body)
@@ -122,7 +124,7 @@ def refined_text(found: Mapping[str, Rows]) -> str:
         for knot, of in found[name]:
             before, after = found[""][knot, of], found[name][knot, of]
             line = [_change(before[k], after[k]) for k in relative]
-            body.append([knot, *line, *(_fixed(_less(after[k], before[k]), 1, "-") for k in angles)])
+            body.append([_marked(knot), *line, *(_fixed(_less(after[k], before[k]), 1, "-") for k in angles)])
         worst = max((abs(float(line[1])) for line in body if line[1] not in ("-", "")), default=0.0)
         parts.append(
             f"`{preset}`, {name} (largest change of c_f: {worst:.2f} %):\n\n{common.table(heads, body)}"
@@ -146,10 +148,14 @@ def orders_text(found: Mapping[str, Rows]) -> str:
 
 
 def rules_text(found: Mapping[str, Table], choice: Choice) -> str:
-    """How each rule orders c_f: Kendall's tau_b, intervals over bends and over knots, and pairs."""
+    """How each rule orders c_f: Kendall's tau_b, intervals over bends and over knots, and pairs.
+
+    After the pairs stands their net share of all: (right - wrong) over the number of all pairs.
+    """
     plain = _by_rule(rules.rules_table(found[""], choice))
     fine = _by_rule(rules.rules_table(found["nodes doubled"], Choice(("standard",), choice.quick)))
-    heads = ["bends", "rule", *(f"{p}: {w}" for p in choice.presets for w in ("τ_b", "by knot", "pairs"))]
+    words = ("τ_b", "by knot", "pairs", "net")
+    heads = ["bends", "rule", *(f"{p}: {w}" for p in choice.presets for w in words)]
     body = []
     for _, which, rule in [key for key in plain if key[0] == choice.presets[0]]:
         line = []
@@ -159,6 +165,7 @@ def rules_text(found: Mapping[str, Table], choice: Choice) -> str:
                 f"{_fixed(row['kendall'], 2)} {_between(row, 'kendall_low', 'kendall_high')}",
                 _between(row, "kendall_low_by_knot", "kendall_high_by_knot"),
                 f"{row['pairs_right']} : {row['pairs_wrong']}",
+                _fixed(row["net"], 2),
             ]
         refined = fine.get(("standard", which, rule), {}).get("kendall")
         body.append([which, rule, *line, _fixed(refined, 2)])
@@ -184,10 +191,13 @@ def rankings_text(found: Mapping[str, Table], choice: Choice) -> str:
 
 
 def pairs_text(found: Mapping[str, Table], choice: Choice) -> str:
-    """Pairs of the thesis's bends in which all three rules are wrong, by more than 5 per cent of c_f."""
+    """Pairs of the thesis's bends in which all three rules are wrong, by more than 5 per cent of c_f.
+
+    The last column marks those in which they are not all three wrong with the fewest crossings for N.
+    """
     listed = rules.disagreements(found[""], choice)
     fine = {preset: by_run(found[name]) for name, (preset, _) in reversed(REFINED.items())}
-    heads = ("preset", "N, τ, Γ say that", "is above", "c_f of both", "their ratio", "refined")
+    heads = ("preset", "N, τ, Γ say that", "is above", "c_f of both", "their ratio", "refined", "fewest N")
     body = []
     for values in listed.rows:
         row = dict(zip(listed.columns, values, strict=True))
@@ -195,7 +205,8 @@ def pairs_text(found: Mapping[str, Table], choice: Choice) -> str:
         if row["c_f_ratio"] < 0.95:
             both = f"{row['c_f_stronger']:.1f}, {row['c_f_weaker']:.1f}"
             strong, weak = (fine[preset][name, preset]["c_f"] for name in names)
-            body.append((preset, *names, both, f"{row['c_f_ratio']:.2f}", f"{strong / weak:.2f}"))
+            holds = "" if row["with_fewest_N"] else "not so"
+            body.append((preset, *names, both, f"{row['c_f_ratio']:.2f}", f"{strong / weak:.2f}", holds))
     return common.table(heads, body)
 
 
@@ -254,7 +265,12 @@ def _change(before: float | None, after: float | None) -> str:
     """A change in per cent; - where there is nothing before or after, and nothing where neither."""
     if before is None or after is None:
         return "" if before is after else "-"
-    return f"{100 * (after / before - 1):+.2f}"
+    return f"{round(100 * (after / before - 1), 2) + 0.0:+.2f}"
+
+
+def _marked(knot: str) -> str:
+    """A bend's name, with a star where chance decides how it twists and turns."""
+    return f"{knot}*" if knot in bends.BY_CHANCE else knot
 
 
 def _fixed(value: float | None, digits: int, without: str = "-") -> str:

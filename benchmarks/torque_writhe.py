@@ -21,8 +21,8 @@ from torsade.figures.proportion import Estimate
 from torsade.figures.runs import results
 from torsade.figures.torque_writhe import Balance, balance, window
 from torsade.motion.overdamped import Stepping
-from torsade.protocols.base import STANDARD_SPACING
 from torsade.protocols.prison_escape import PrisonEscape
+from torsade.protocols.pulled import STANDARD_SPACING
 from torsade.reptation import node_tangents
 from torsade.results import Result
 

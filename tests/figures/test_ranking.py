@@ -35,7 +35,17 @@ def test_orders_of_three():
     assert ranking.kendall([1, 2, 3], [3, 2, 1]) == pytest.approx(-1)
     assert ranking.kendall([1, 1, 2], [1, 2, 3]) == pytest.approx(2 / math.sqrt(2 * 3))
     found = ranking.agreement([1, 1, 2, 3], [1, 2, 4, 3])
-    assert (found.n, found.right, found.wrong) == (4, 4, 1)
+    assert (found.n, found.right, found.wrong, found.net) == (4, 4, 1, 0.5)
+
+
+def test_an_order_told_pair_by_pair_is_that_of_numbers_or_none_that_numbers_give():
+    _, x, y = tied(2)
+    signs = np.sign(x[:, None] - x[None])
+    groups = [k // 3 for k in range(20)]
+    assert ranking.agreement(signs, y, groups) == ranking.agreement(x, y, groups)
+
+    circle = np.array([[0, 1, -1], [-1, 0, 1], [1, -1, 0]])  # each above the next
+    assert ranking.kendall(circle, [3, 2, 1]) == pytest.approx(1 / 3)  # two of three
 
 
 @pytest.mark.parametrize("rank", ["kendall", "spearman"])

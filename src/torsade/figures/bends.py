@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from torsade.results import Result
 
 __all__ = [
+    "BY_CHANCE",
     "COLUMNS",
     "FURTHER",
     "QUICK",
@@ -35,6 +36,7 @@ __all__ = [
     "distinct",
     "drawn",
     "family",
+    "fewest_crossings",
     "gamma_range",
     "kinds",
     "label_of",
@@ -55,6 +57,10 @@ QUICK_DURATION, QUICK_FRAMES = 0.02, 4
 
 PULLED_OTHERWISE: Mapping[str, str] = {"thief": "reef", "grief": "granny"}
 
+BY_CHANCE = ("reef",)
+"""Bends that turned round are themselves, and that give in either way: which one, and so their twist and how
+far they turn, rounding decides, so that these move by radians as mesh or tolerance are refined."""
+
 DRAWINGS = 200
 """Drawings looked at for the range of Gamma; with 2000, ten times slower, no range of the 27 is wider."""
 
@@ -63,6 +69,7 @@ COLUMNS = (
     "preset",
     "pulled",
     "N",
+    "N_fewest",
     "Wr",
     "tau",
     "Gamma",
@@ -82,10 +89,10 @@ COLUMNS = (
 )
 """What `table` tells of each bend and preset.
 
-Gamma is that of the catalogue's drawing, Gamma_least and Gamma_greatest belong to drawings with fewest
-crossings. pull_speed and compression (the sum over all edges of the contact forces on them) are means over
-the same time, from c_f_from_s to the end or to slipping; twist, the largest log strain and the rotation of
-the knot's body are those at its end.
+N and Gamma are those of the catalogue's drawing; N_fewest, Gamma_least and Gamma_greatest belong to drawings
+with the fewest crossings that moves lead to, so that Gamma may lie outside. pull_speed and compression (the
+sum over all edges of the contact forces on them) are means over the same time, from c_f_from_s to the end or
+to slipping; twist, the largest log strain and the rotation of the knot's body are those at its end.
 """
 
 
@@ -123,8 +130,14 @@ def counts(knot: str) -> State:
 
 
 @lru_cache(maxsize=64)
+def fewest_crossings(knot: str) -> int:
+    """The fewest crossings that moves take that drawing to."""
+    return state(simplify(drawn(knot))).crossings
+
+
+@lru_cache(maxsize=64)
 def gamma_range(knot: str) -> Range:
-    """Gamma over drawings of the same pulled bend."""
+    """Gamma over drawings of the same pulled bend with so few crossings."""
     return circulation_range(simplify(drawn(knot)), limit=DRAWINGS)
 
 
@@ -215,6 +228,7 @@ def _row(knot: str, result: Result) -> tuple[Cell, ...]:
         str(result.spec["preset"]),
         str(data.attrs["pulled"]),
         counted.crossings,
+        fewest_crossings(knot),
         counted.writhe,
         counted.tau,
         counted.gamma,

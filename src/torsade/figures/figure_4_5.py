@@ -2,7 +2,8 @@
 
 (A) Bends of the reef group as they hold, coloured by strain. (D-F) Drawings, oriented towards the pulled
 ends, with the charges of their crossings and the circulation of their faces. (G) The phase diagram: tau and
-Gamma for every N, coloured by friction. (H) How well each rule orders the bends.
+Gamma for every N, coloured by friction. (H) How well each rule orders the bends. The thesis's panels B, of
+ropes, and C, a sketch of torques, are not drawn.
 """
 
 from __future__ import annotations
@@ -24,7 +25,10 @@ __all__ = ["FIGURE"]
 
 REEF_GROUP = ("grief", "granny", "thief", "reef")
 OTHERS = ("carrick13", "carrick14", "alpine13", "zeppelin14")
-MEASURED = ("knot", "preset", "N", "tau", "Gamma", "Gamma_least", "Gamma_greatest", "c_f", "slipped_at_s")
+MEASURED = (
+    *("knot", "preset", "N", "N_fewest", "tau", "Gamma", "Gamma_least", "Gamma_greatest"),
+    *("c_f", "slipped_at_s"),
+)
 
 
 def runs(choice: Choice) -> Mapping[str, Spec]:
@@ -69,16 +73,16 @@ def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Cho
 
 
 def _said(row: Mapping[str, Cell], choice: Choice, rows: Mapping[Any, Mapping[str, Cell]]) -> str:
-    """A bend's name, its friction with each preset, and how far its body turned."""
+    """A bend's name, its friction with each preset, and how far its body turned, unless chance decides."""
     knot = str(row["knot"])
     c_f = [rows[knot, preset]["c_f"] for preset in choice.presets if (knot, preset) in rows]
     lines = [
         panels.name_of(knot),
         "$c_f$ = " + ", ".join(f"{float(str(x)):.1f}" for x in c_f if x is not None),
     ]
-    if row["rotation_rad"] is not None:
-        turned = round(float(row["rotation_rad"]), 2) + 0.0
-        lines[1] += f", turns {turned:.2f} rad".replace("-", "−")
+    if row["rotation_rad"] is not None and knot not in bends.BY_CHANCE:
+        turned = round(float(str(row["rotation_rad"])), 1) + 0.0
+        lines[1] += f", turns {turned:.1f} rad".replace("-", "−")
     return "\n".join(lines)
 
 
@@ -95,27 +99,40 @@ def _draw_rules(axes: Any, table: Table, choice: Choice) -> None:
     for k, preset in enumerate(choice.presets):
         found = _of_thesis(table, preset)
         for place, rule in enumerate(names):
-            if rule not in found:
-                continue
-            row, y = found[rule], place + 0.42 * (k - 0.5 * (len(choice.presets) - 1))
-            colour = panels.PRESET_COLOURS[preset]
-            for low, high, width in (
-                ("kendall_low_by_knot", "kendall_high_by_knot", 0.7),
-                ("kendall_low", "kendall_high", 2.2),
-            ):
-                if row[low] is not None and row[high] is not None:
-                    axes.plot([row[low], row[high]], [y, y], color=colour, lw=width, alpha=0.75, zorder=2)
-            axes.plot(row["kendall"], y, "o", ms=4, mfc="white", mec=colour, mew=1.2, zorder=3)
-            axes.annotate(
-                f"{row['pairs_right']} : {row['pairs_wrong']}", (1.0, y), xycoords=("axes fraction", "data"),
-                xytext=(4, 0), textcoords="offset points", fontsize=5.4, color=colour, va="center",
-            )  # fmt: skip
+            if rule in found:
+                y = place + 0.42 * (k - 0.5 * (len(choice.presets) - 1))
+                _draw_rule(axes, found[rule], y, panels.PRESET_COLOURS[preset])
+        axes.plot([], [], "o-", color=panels.PRESET_COLOURS[preset], mfc="white", ms=4, label=preset)
     axes.axvline(0, color=panels.MUTED, lw=0.7)
     axes.set_yticks(range(len(names)), [_printed(rule) for rule in names], fontsize=7)
-    axes.set(xlim=(-0.75, 1.0), ylim=(len(names) - 0.5, -0.6), xlabel=r"Kendall's $\tau_b$ with $c_f$")
+    axes.set(xlim=(-0.75, 1.0), ylim=(len(names) - 0.5, -0.6))
+    axes.set_xlabel(r"Kendall's $\tau_b$ with $c_f$; 95 % intervals over bends (thick) and over knots (thin)")
     axes.tick_params(axis="y", length=0)
-    axes.set_title("right : wrong pairs", fontsize=6, loc="right", x=1.05)
+    axes.legend(loc="lower left", frameon=False, fontsize=7)
+    axes.annotate(
+        "right : wrong pairs,\nnet over all", (1.0, 1.0), xycoords="axes fraction", xytext=(4, 3),
+        textcoords="offset points", fontsize=6, va="bottom", linespacing=1.1, annotation_clip=False,
+    )  # fmt: skip
     panels.letter(axes, "H", -0.22)
+
+
+def _draw_rule(axes: Any, row: Mapping[str, Any], y: float, colour: str) -> None:
+    """A rule's correlation and both intervals, where it has them, and its pairs at the right."""
+    for low, high, width in (
+        ("kendall_low_by_knot", "kendall_high_by_knot", 0.7),
+        ("kendall_low", "kendall_high", 2.2),
+    ):
+        if row[low] is not None and row[high] is not None:
+            axes.plot([row[low], row[high]], [y, y], color=colour, lw=width, alpha=0.75, zorder=2)
+    if row["kendall"] is not None:
+        axes.plot(row["kendall"], y, "o", ms=4, mfc="white", mec=colour, mew=1.2, zorder=3)
+    said = [f"{row['pairs_right']} : {row['pairs_wrong']}"]
+    said += [] if row["net"] is None else [f"{row['net']:.2f}".replace("-", "−")]
+    for x, text in zip((4, 36), said, strict=False):
+        axes.annotate(
+            text, (1.0, y), xycoords=("axes fraction", "data"), xytext=(x, 0), textcoords="offset points",
+            fontsize=5.4, color=colour, va="center", annotation_clip=False,
+        )  # fmt: skip
 
 
 def _of_thesis(table: Table, preset: Preset) -> dict[str, dict[str, Cell]]:

@@ -29,7 +29,7 @@ ROWS = (
 )
 """Where each variant is drawn; the places left free hold the key."""
 
-COUNTED = ("N", "Wr", "tau", "Gamma", "Gamma_least", "Gamma_greatest", "Whitney")
+COUNTED = ("N", "N_fewest", "Wr", "tau", "Gamma", "Gamma_least", "Gamma_greatest", "Whitney")
 MEASURED = ("c_f", "slipped_at_s")
 
 

@@ -7,7 +7,8 @@ occurs in a sample, the sample's correlations are (sums over i and j)
     Spearman's rho    Σ w_i a_i b_i / √(Σ w_i a_i² · Σ w_i b_i²),   a_i = Σ w_j s_ij,  b_i = Σ w_j t_ij
 
 since a_i/2 is the mid-rank of item i less the mean rank. So all samples of a bootstrap are one product of
-arrays, ties that come of drawing an item twice included.
+arrays, ties that come of drawing an item twice included. Nothing in them asks that s_ij come of numbers x_i:
+an order may as well be told pair by pair, as a matrix s (n, n), antisymmetric.
 """
 
 from __future__ import annotations
@@ -45,6 +46,7 @@ class Agreement(NamedTuple):
     kendall, spearman : correlations with their intervals
     n : items
     right, wrong : pairs that both orders tell apart, and tell apart the same way or not
+    net : (right - wrong) over all pairs, ties and all
     """
 
     kendall: Correlation
@@ -53,10 +55,19 @@ class Agreement(NamedTuple):
     right: int
     wrong: int
 
+    @property
+    def net(self) -> float:
+        """nan for fewer than two items."""
+        pairs = self.n * (self.n - 1) // 2
+        return (self.right - self.wrong) / pairs if pairs else float("nan")
+
 
 def kendall(x: ArrayLike, y: ArrayLike, weights: ArrayLike | None = None) -> Floats:
-    """Kendall's tau_b of x and y (n,), or of samples in which items occur so often, weights (..., n)."""
-    s, t, w = _signs(x), _signs(y), _weights(x, weights)
+    """Kendall's tau_b of x and y (n,), or of samples in which items occur so often, weights (..., n).
+
+    x may be the order of pairs instead, (n, n), here and below.
+    """
+    s, t, w = _signs(x), _signs(y), _weights(y, weights)
 
     def total(matrix: Floats) -> Floats:
         return np.asarray(((w @ matrix) * w).sum(-1))
@@ -66,7 +77,7 @@ def kendall(x: ArrayLike, y: ArrayLike, weights: ArrayLike | None = None) -> Flo
 
 def spearman(x: ArrayLike, y: ArrayLike, weights: ArrayLike | None = None) -> Floats:
     """Spearman's rho, ties at their mid-rank, of x and y (n,), or of samples, weights (..., n)."""
-    w = _weights(x, weights)
+    w = _weights(y, weights)
     a, b = w @ _signs(x).T, w @ _signs(y).T
     return _ratio((w * a * b).sum(-1), (w * a * a).sum(-1) * (w * b * b).sum(-1))
 
@@ -80,13 +91,14 @@ def correlation(
 
     Parameters
     ----------
-    x, y : (n,) two values of each item
+    x : (n,) a value of each item, or (n, n) the order of pairs
+    y : (n,) another value
     rank : kendall or spearman
     groups : (n,) what each item belongs to: whole groups are drawn then, as items of one are not independent
     """
     of = {"kendall": kendall, "spearman": spearman}[rank]
     value = float(of(x, y))
-    named = np.arange(np.size(x)) if groups is None else np.array([str(g) for g in groups])
+    named = np.arange(np.size(y)) if groups is None else np.array([str(g) for g in groups])
     _, group = np.unique(named, return_inverse=True)
     n = len(set(group))
     if not np.isfinite(value) or n < 3:
@@ -120,7 +132,7 @@ def correlation(
 
 
 def agreement(x: ArrayLike, y: ArrayLike, groups: Sequence[object] | None = None) -> Agreement:
-    """Both correlations of x and y (n,), and how many pairs they order alike."""
+    """Both correlations of x, (n,) or (n, n), and y (n,), and how many pairs they order alike."""
     product = np.triu(_signs(x) * _signs(y))
     return Agreement(
         correlation(x, y, "kendall", groups),
@@ -149,8 +161,10 @@ def dominance(rules: ArrayLike) -> Floats:
 
 
 def _signs(x: ArrayLike) -> Floats:
-    """sign(x_i - x_j), shape (n, n)."""
+    """sign(x_i - x_j), shape (n, n), of x (n,); what is a matrix already, as it is."""
     values = np.asarray(x, np.float64)
+    if values.ndim == 2:
+        return values
     return np.asarray(np.sign(values[:, None] - values[None]))
 
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from torsade.motion.moving import Outcome
     from torsade.motion.overdamped import Laws, Measured, Motion, Stepping
 
-__all__ = ["STANDARD_SPACING", "Experiment", "Pulled"]
+__all__ = ["PUBLISHED_STEP", "STANDARD_SPACING", "Experiment", "Pulled"]
 
 STANDARD_SPACING = 0.5  # radii
 """Greatest distance between nodes in the standard preset."""
