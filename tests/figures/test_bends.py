@@ -7,9 +7,10 @@ import csv
 import numpy as np
 import pytest
 import xarray
+from scipy import stats
 
 from torsade.cli.figure import draw
-from torsade.figures import bends, figure, panels, twist_share
+from torsade.figures import bends, figure, figure_4_1, figure_4_5, panels, twist_share
 from torsade.figures.base import Choice
 from torsade.figures.runs import results
 from torsade.knots import bend_diagram
@@ -111,6 +112,37 @@ def test_bends_that_repeat_another_are_left_out():
         "phase diagram": 15,
         "all": 24,
     }
+
+
+def test_the_ranking_says_the_correlation_of_the_bends_that_it_draws():
+    rng = np.random.default_rng(4)
+    values = {"c_f": rng.permutation(27), "compression_N": rng.permutation(27)}
+    rows = [
+        tuple(
+            {"knot": knot, "preset": "standard"}.get(c, values.get(c, np.ones(27))[k]) for c in bends.COLUMNS
+        )
+        for k, knot in enumerate(bends.labels(Choice()))
+    ]
+    table = bends.Table(bends.COLUMNS, rows)
+    axes = panels.new_figure(3, 3).subplots()
+    figure_4_1.draw_rankings(
+        axes, table, figure_4_1.rankings(table, Choice(presets=("standard",))), "standard"
+    )
+    of = bends.distinct(table, "standard")["all"]
+    tau = stats.kendalltau(of["c_f"], of["compression_N"]).statistic
+
+    assert len(axes.lines) == len(of["knot"]) == 24
+    first, second = axes.get_title().split("\n")
+    assert first == "standard, 24 bends"
+    assert f"= {tau:.2f} [".replace("-", "−") in second
+
+
+@pytest.mark.parametrize(("knot", "said"), [("thief", "turns −7.9 rad"), ("reef", None)])
+def test_a_turn_that_chance_decides_is_not_told(knot, said):
+    row = {"knot": knot, "c_f": 30.0, "rotation_rad": -7.88}
+    text = figure_4_5._said(row, Choice(presets=("standard",)), {(knot, "standard"): row})
+
+    assert text.splitlines()[1] == "$c_f$ = 30.0" + (f", {said}" if said else "")
 
 
 def test_names_are_spread_out_no_farther_than_needed():

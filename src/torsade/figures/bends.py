@@ -130,15 +130,14 @@ def counts(knot: str) -> State:
 
 
 @lru_cache(maxsize=64)
-def fewest_crossings(knot: str) -> int:
-    """The fewest crossings that moves take that drawing to."""
-    return state(simplify(drawn(knot))).crossings
-
-
-@lru_cache(maxsize=64)
 def gamma_range(knot: str) -> Range:
     """Gamma over drawings of the same pulled bend with so few crossings."""
     return circulation_range(simplify(drawn(knot)), limit=DRAWINGS)
+
+
+def fewest_crossings(knot: str) -> int:
+    """The fewest crossings that moves, of the ends too, take that drawing to."""
+    return gamma_range(knot).crossings
 
 
 def kinds(knots: Iterable[str]) -> dict[str, str]:

@@ -128,7 +128,7 @@ def _speed(axes: Any, results: Mapping[str, Result], preset: Preset) -> tuple[fl
 
 def draw_rankings(axes: Any, table: Table, rankings: Table, preset: Preset) -> None:
     """The two rankings side by side, each bend joined with itself."""
-    found = next(reversed(bends.distinct(table, preset).values()))
+    which, found = list(bends.distinct(table, preset).items())[-1]
     knots = found["knot"]
     sides = [_places(found[name]) for name in ("compression_N", "c_f")]
     for k, knot in enumerate(knots):
@@ -147,14 +147,13 @@ def draw_rankings(axes: Any, table: Table, rankings: Table, preset: Preset) -> N
     axes.axis("off")
     axes.text(-0.04, -0.9, "compression (N)", ha="right", fontsize=7)
     axes.text(1.04, -0.9, "$c_f$", ha="left", fontsize=7)
-    row = dict(zip(rankings.columns, rankings.rows[rankings.column("preset").index(preset)], strict=True))
+    rows = (dict(zip(rankings.columns, row, strict=True)) for row in rankings.rows)
+    row = next(row for row in rows if (row["preset"], row["bends"]) == (preset, which))
     said = [
         panels.agreed(word, *(float(str(row[f"{name}{end}"])) for end in ("", "_low", "_high")))
         for word, name in ((r"Kendall $\tau_b$", "kendall"), (r"Spearman $\rho$", "spearman"))
     ]
-    axes.set_title(
-        f"{preset}, {row['n']} bends of the thesis\n" + ", ".join(said), fontsize=6.5, loc="center"
-    )
+    axes.set_title(f"{preset}, {row['n']} bends\n" + ", ".join(said), fontsize=6.5, loc="center")
 
 
 def _places(values: Sequence[Any]) -> np.ndarray[tuple[int], np.dtype[np.int64]]:
