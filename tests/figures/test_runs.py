@@ -113,7 +113,6 @@ def spoil_attribute(path):
         spoil_chunk,
         lambda path: shutil.rmtree(path / "separation"),
         lambda path: a_chunk(path, "velocity").unlink(),
-        lambda path: (path / "twist" / "zarr.json").write_text("{"),
         spoil_attribute,
     ],
 )

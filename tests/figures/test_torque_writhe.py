@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+from itertools import combinations, pairwise
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from torsade.cli.figure import draw
 from torsade.figures import bends, figure_4_3, figure_4_4
 from torsade.figures.base import Choice
 from torsade.figures.flow import arrows, flow
-from torsade.figures.moments import coefficients, moment, torque_of
+from torsade.figures.moments import coefficients, moment, orientation, torque_of
 from torsade.figures.runs import results
 from torsade.figures.torque_writhe import balance, window
 from torsade.protocols import PrisonEscape
@@ -46,7 +47,8 @@ def helix(pitch: float, turns: int, nodes: int) -> tuple[list[np.ndarray], float
 def result_of(strands, velocities, torque) -> Result:
     """A result with one frame, both strands gripped at their last ends."""
     starts = np.cumsum([0] + [len(x) for x in strands])
-    model = {"radius": H, "laws": {"eta_f_ratio": ETA_F_RATIO, "drag": "continuum"}, "material": {"eta": ETA}}
+    laws = {"eta_f_ratio": ETA_F_RATIO, "drag": "continuum", "exclusion_edges": 1, "exclusion_radii": np.pi}
+    model = {"radius": H, "laws": laws, "material": {"eta": ETA}}
     data = xarray.Dataset(
         {
             "position": (("time", "node", "space"), np.concatenate(strands)[None]),
@@ -102,6 +104,41 @@ def pair_writhe(strands, reach):
     R = np.linalg.norm(r, axis=2)
     pair = np.einsum("abc,abc->ab", np.cross(r, f[None]), np.broadcast_to(e[:, None], r.shape)) / R**3
     return float(np.where(reach > R, pair, 0.0).sum() / (2 * np.pi))
+
+
+@pytest.mark.parametrize("laws", [{}, {"exclusion_edges": 35}, {"exclusion_radii": 17.7}], ids=str)
+@pytest.mark.parametrize("preset", ["standard", "published"])
+def test_pairs_are_the_contacts_of_the_run(preset, laws):
+    """Those that a search of all pairs finds with the laws that were asked for, in rest arclength."""
+    spec = PrisonEscape(knot="granny", duration="0.02 s", frames=4, preset=preset, **laws)
+    result = spec.run()
+    assert orientation(result) == [1, 1]  # edges are numbered as in the run
+    usual = {"standard": (1, np.pi), "published": (10, 0)}[preset]
+    own = laws.get("exclusion_edges", usual[0]), laws.get("exclusion_radii", usual[1])
+    expected = contacts(result, *own)
+    pairs = moment(result, -1).pairs
+    assert len(expected) > 20
+    assert set(zip(pairs.i.tolist(), pairs.j.tolist(), strict=True)) == expected
+    assert bool(laws) == (expected < contacts(result, *usual))
+
+
+def contacts(result, exclusion_edges, exclusion_radii):
+    """Pairs of edges in the last frame, with a torque, midpoints nearer than 2h and not excluded."""
+    data = result.dataset
+    last, first = data["position"].values[[-1, 0]].astype(float)
+    torque = data["self_torque"].values[-1]
+    mid, along, strand = [], [], []
+    for k, (a, b) in enumerate(pairwise(data["node_start"].values)):
+        mid.extend(0.5 * (last[a + 1 : b] + last[a : b - 1]))
+        rest = np.linalg.norm(np.diff(first[a:b], axis=0), axis=1)
+        along.extend(np.cumsum(rest) - 0.5 * rest)
+        strand.extend([k] * len(rest))
+    found = set()
+    for i, j in combinations(np.flatnonzero(torque).tolist(), 2):
+        far = j - i > exclusion_edges and along[j] - along[i] >= exclusion_radii * H
+        if (strand[i] != strand[j] or far) and np.linalg.norm(mid[i] - mid[j]) < 2 * H:
+            found.add((i, j))
+    return found
 
 
 def test_writhe_densities_sum_up(granny):

@@ -1,4 +1,5 @@
-"""No strand passes through another in any run: another library looks at every stored step of every bend.
+"""No strand passes through another in any run: another library looks at every stored step of every bend, of
+the knots of figure 4-2 pulled to rest and of its Reidemeister moves.
 
 ipctk's continuous collision detection (Wang et al. 2021) follows all pairs of edges from each stored frame to
 the next, nodes moving in straight lines.
@@ -12,6 +13,8 @@ import numpy as np
 import pytest
 
 import torsade as ts
+from torsade.figures import move_energies, twist_share
+from torsade.figures.base import Choice
 from torsade.knots.bends import bends
 
 ipctk = pytest.importorskip("ipctk")
@@ -45,6 +48,26 @@ def test_no_strand_passes_through_another(knot, preset):
     x = data["position"].values
     assert len(x) > 50
     assert float(np.linalg.norm(x[-1] - x[0], axis=1).max()) > 2e-3  # ten radii
+    assert steps_that_cross(x, data["node_start"].values) == []
+
+
+KNOTS_PULLED = twist_share.runs(Choice())
+MOVES = move_energies.runs(Choice())
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("label", [*KNOTS_PULLED, *MOVES])
+def test_nor_in_the_runs_of_figure_4_2(label):
+    """As they stand in the figure: knots until they are still, moves in ten minutes."""
+    data = {**KNOTS_PULLED, **MOVES}[label].run().dataset
+    x = data["position"].values
+    assert len(x) > 90
+    assert float(np.linalg.norm(x[-1] - x[0], axis=1).max()) > 1e-3  # five radii
+    if label in KNOTS_PULLED:
+        assert data.attrs["over_at_s"] > 1
+    else:
+        before, after = data["crossings"].values[[0, -1]]
+        assert after - before == {"R1": -1, "R2": 2, "R3": 0}[label.split()[1].rstrip(",")]
     assert steps_that_cross(x, data["node_start"].values) == []
 
 

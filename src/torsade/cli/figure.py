@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from torsade.cli.commands import check_drawings, progress
-from torsade.errors import TorsadeError, quoted
+from torsade.errors import TorsadeError, counted, quoted, reason_of
 from torsade.figures import NUMBERS, figure
 from torsade.figures.base import Cell, Choice, Table
 
@@ -55,20 +55,42 @@ def draw(
 
     make_folder(folder)
     check_drawings(str(wanted.file(folder)), None)
+    _check_files(wanted, folder)
+    specs, kept = wanted.runs(choice), folder / "runs"
     with progress(json) as shown:
-        found = results(
-            wanted.runs(choice),
-            folder / "runs",
-            workers=None if workers is None else int(workers),
-            fresh=fresh,
-            progress=shown,
-        )
-    tables = wanted.measure(found, choice)
-    for name, table in tables.items():
-        table.write(wanted.file(folder, name))
-    wanted.draw(found, tables, choice, wanted.file(folder))
+        at_once = None if workers is None else int(workers)
+        found = results(specs, kept, workers=at_once, fresh=fresh, progress=shown)
+    try:
+        tables = wanted.measure(found, choice)
+        for name, table in tables.items():
+            table.write(wanted.file(folder, name))
+        wanted.draw(found, tables, choice, wanted.file(folder))
+    except KeyboardInterrupt:
+        stored = f"all {counted(len(specs), 'run')} are stored in {str(kept)!r}; " if specs else ""
+        again = "the same command without --fresh goes on" if specs and fresh else "the same command goes on"
+        raise KeyboardInterrupt(
+            f"interrupted before figure {wanted.number} was drawn; {stored}{again}"
+        ) from None
     _print(wanted, tables, folder, json)
     return 0
+
+
+def _check_files(wanted: Figure, folder: Path) -> None:
+    """Refuse what stands in the place of the picture or of a table and cannot be written, before any run."""
+    main = wanted.file(folder, "")
+    others = sorted(folder.glob(f"{main.stem}-*{main.suffix}"))
+    for path in (wanted.file(folder), main, *others):
+        if path.is_dir():
+            raise TorsadeError(f"{str(path)!r} is a folder; remove it, or give another --out")
+        if not path.exists():
+            continue
+        try:
+            with path.open("ab"):
+                pass
+        except OSError as error:
+            raise TorsadeError(
+                f"cannot write {str(path)!r} ({reason_of(error)}); remove it, or give another --out"
+            ) from None
 
 
 def _print(wanted: Figure, tables: Mapping[str, Table], folder: Path, json: bool) -> None:

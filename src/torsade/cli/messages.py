@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 if TYPE_CHECKING:
     from cyclopts import CycloptsError
 
-__all__ = ["parse_error", "say"]
+__all__ = ["first_words", "parse_error", "say"]
 
 
 class _Command(NamedTuple):
@@ -84,6 +84,12 @@ COMMANDS = MappingProxyType(
             'the radius is not given; give --radius, such as --radius "0.7 mm"',
             "{} belongs to no option; give every value after its option, and quote values with units",
         ),
+        "figure": _Command(
+            ("--out", "--preset", "--workers"),
+            ("--quick", "--fresh", "--json"),
+            "",
+            "{} comes after the number; make one figure at a time, such as torsade figure 4-5",
+        ),
         "knots list": _Command(("--kind",), ("--json",), "", _QUOTE),
         "knots show": _Command((), ("--json",), "nothing is given; give a name such as reef or 5_1", _QUOTE),
         "knots build": _Command(
@@ -96,7 +102,12 @@ COMMANDS = MappingProxyType(
 )
 """By their words in the shell."""
 
-_FIRST = ("convert", "demo", "figure", "knots", "material", "run", "tight", "topology", "trials")
+
+def first_words() -> list[str]:
+    """The commands that there are, in the order of the alphabet."""
+    from torsade.cli.app import build
+
+    return sorted(name for name in build([]) if not name.startswith("-"))
 
 
 def _command(arguments: Sequence[str]) -> str | None:
@@ -188,8 +199,9 @@ def _unknown_command(word: str, arguments: Sequence[str]) -> str:
         return f"{word!r} is a protocol; give torsade run {word}"
     if arguments[:1] == ["knots"] and word != "knots":
         return f"there is no command 'knots {word}'; choose knots list, knots show or knots build"
-    near = difflib.get_close_matches(word, [*_FIRST, "--help", "--version"], n=1)
-    known = f"choose {', '.join(_FIRST[:-1])} or {_FIRST[-1]}, or see torsade --help"
+    first = first_words()
+    near = difflib.get_close_matches(word, [*first, "--help", "--version"], n=1)
+    known = f"choose {', '.join(first[:-1])} or {first[-1]}, or see torsade --help"
     hint = f"did you mean {near[0]!r}?" if near else known
     what = "option" if word.startswith("-") else "command"
     return f"there is no {what} {word!r}; {hint}"

@@ -20,6 +20,8 @@ __all__ = ["print_file", "print_grid", "print_rows", "print_table"]
 WIDTH = 24
 """Of the first column: the longest name in it."""
 
+_STAGES = ("start", "top", "end")
+
 
 def print_table(result: Result, report: dict[str, Any]) -> None:
     """Print what was done and what came of it."""
@@ -100,9 +102,9 @@ def _escape(report: dict[str, Any], held: int, duration: float) -> Iterator[tupl
     yield "separation", _span(report["separation_m"], times)
     at = f"at {times[held]:.3g} s"
     yield "compression", f"{report['compression_N'][held]:.0f} N {at}"
-    twist = ", ".join(f"{'AB'[k]} {t[held]:+.2f} rad" for k, t in enumerate(report["twist_rad"]))
+    twist = ", ".join(f"{'AB'[k]} {t[held]:+z.2f} rad" for k, t in enumerate(report["twist_rad"]))
     yield "twist", f"{twist} {at}"
-    yield "turned about the pull", f"{report['rotation_rad'][held]:+.2f} rad {at}"
+    yield "turned about the pull", f"{report['rotation_rad'][held]:+z.2f} rad {at}"
 
 
 def _tightened(report: dict[str, Any], awaited: bool) -> Iterator[tuple[str, str]]:
@@ -113,24 +115,23 @@ def _tightened(report: dict[str, Any], awaited: bool) -> Iterator[tuple[str, str
     yield "end to end", _span(report["end_to_end_m"], times)
     yield "length", _span(report["length_m"], times)
     yield "largest h kappa", f"{report['h_kappa_max'][-1]:.3f} {at}"
-    yield "twist", f"{report['total_twist_rad'][-1]:+.3f} rad {at}"
+    yield "twist", f"{report['total_twist_rad'][-1]:+z.3f} rad {at}"
     yield "largest log strain", f"{report['max_log_strain'][-1]:.3f} {at}"
 
 
 def _moved(report: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    """Energies in units of B/L, bending stiffness over free length."""
+    """Energies in units of B/L, bending stiffness over free length, beyond those of strands lying apart."""
     unit, crossings = report["B_over_L_J"], report["crossings"]
+    start, top, end = ((report[f"energy_{k}_J"] - report["energy_apart_J"]) / unit for k in _STAGES)
     way = 1e3 * report["displacement_m"][-1]
     yield "strands", f"{1e3 * report['length_m']:g} mm from grip to grip, ends {report['ends']}"
     yield "way of moved ends", f"{way:.2f} mm in {report['times_s'][-1]:g} s"
     yield "crossings", f"{crossings[0]} at the start, {crossings[-1]} at the end"
     yield "unit of energy B/L", f"{unit:.3g} J"
-    yield "energy at the start", f"{report['energy_start_J'] / unit:.3f} B/L"
-    yield (
-        "highest energy",
-        f"{report['energy_top_J'] / unit:.3f} B/L, after {1e3 * report['top_at_m']:.2f} mm",
-    )
-    yield "energy at the end", f"{report['energy_end_J'] / unit:.3f} B/L"
+    yield "energies", "beyond those of the same strands lying apart"
+    yield "energy at the start", f"{start:z.3f} B/L"
+    yield "highest energy", f"{top:z.3f} B/L, after {1e3 * report['top_at_m']:.2f} mm"
+    yield "energy at the end", f"{end:z.3f} B/L"
 
 
 def _bent(report: dict[str, Any]) -> Iterator[tuple[str, str]]:

@@ -172,11 +172,11 @@ def _rows(answer: dict[str, Any]) -> Iterator[tuple[str, str]]:
         listed = answer["ropelength_listed"]
         yield (
             "shortest listed L/h",
-            f"{listed:g}, {100 * (answer['ropelength'] / listed - 1):+.2f} % to this one",
+            f"{listed:g}, {100 * (answer['ropelength'] / listed - 1):+z.2f} % to this one",
         )
     if answer["radius_m"] is not None:
         yield "length", f"{1e3 * answer['length_m']:.5g} mm at radius {1e3 * answer['radius_m']:g} mm"
-    yield "writhe in space", f"{answer['writhe_3d']:+.4f}"
+    yield "writhe in space", f"{answer['writhe_3d']:+z.4f}"
     yield "average crossing number", f"{answer['acn']:.4f}"
     yield (
         "contacts, kinks",

@@ -134,7 +134,7 @@ def _space(found: dict[str, Any]) -> Iterator[tuple[str, str]]:
     refused = len(seen["refused"])
     others = f" ({counted(refused, 'direction')} showed no clear drawing)" if refused else ""
     yield "seen along", f"({direction}){others}"
-    yield "writhe in space", f"{found['writhe_3d']:+.4f}"
+    yield "writhe in space", f"{found['writhe_3d']:+z.4f}"
     yield "average crossing number", f"{found['acn']:.4f}"
     if found["linking_3d"]:
         yield "linking in space", _matrix(found["linking_3d"])

@@ -13,7 +13,9 @@ import numpy as np
 
 from torsade import reptation
 from torsade.arrays import Floats, Ints
+from torsade.assembly import assemble
 from torsade.results import Result
+from torsade.rod.neighbours import neighbour_pairs
 from torsade.topology.measures import writhe_density
 
 __all__ = ["Coefficients", "Moment", "Pairs", "coefficients", "moment", "orientation", "torque_of"]
@@ -31,7 +33,7 @@ class Coefficients(NamedTuple):
 
 
 class Pairs(NamedTuple):
-    """Edges i and j (n,) in contact, counted through both strands.
+    """Edges i < j (n,) in contact, counted through both strands.
 
     writhe (n,) is what they add to Wr_3, found from their midpoints; nearness (2h/R)²; shortening the product
     of their rest lengths, by which the law of drag weighs, over that of their present lengths.
@@ -149,7 +151,7 @@ def moment(result: Result, frame: int) -> Moment:
         part / l for part, l in zip(np.split(writhe_density(strands, False), edges), lengths, strict=True)
     ]
     rest = _oriented(_rest_lengths(result), signs)
-    pairs = _pairs(strands, rest, torque, coefficients(result).h)
+    pairs = _pairs(strands, rest, torque, result)
     touching = np.split(_density(pairs, strands), edges)
     return Moment(strands, velocities, torque, writhe, touching, rest, pairs, fit)
 
@@ -165,23 +167,22 @@ def _rest_lengths(result: Result) -> list[Floats]:
     return [np.linalg.norm(np.diff(x, axis=0), axis=1) for x in strands]
 
 
-def _pairs(strands: list[Floats], rest: list[Floats], torque: list[Floats], h: float) -> Pairs:
-    """Edges in contact: midpoints nearer than 2h, with a torque; on one strand, more than pi h apart."""
-    from scipy.spatial import cKDTree
-
+def _pairs(strands: list[Floats], rest: list[Floats], torque: list[Floats], result: Result) -> Pairs:
+    """Edges in contact by the laws of the run, with a torque: midpoints nearer than 2h, none excluded."""
+    meaning = json.loads(result.dataset.attrs["model"])
+    h, laws = float(meaning["radius"]), meaning["laws"]
+    fibers = assemble(strands, rest_lengths=rest)
     mid = np.concatenate([0.5 * (x[1:] + x[:-1]) for x in strands])
-    e = np.concatenate([np.diff(x, axis=0) for x in strands])
-    length = np.linalg.norm(e, axis=1)
-    along = np.concatenate([np.cumsum(np.linalg.norm(np.diff(x, axis=0), axis=1)) for x in strands])
-    owner = np.repeat(np.arange(len(strands)), [len(x) - 1 for x in strands])
-    i, j = cKDTree(mid).query_pairs(2 * h, output_type="ndarray").T
+    exclusion = int(laws["exclusion_edges"]), float(laws["exclusion_radii"]) * h
+    i, j = neighbour_pairs(fibers, mid, 2 * h, *exclusion).T
     loaded = np.concatenate(torque) != 0
-    keep = ((owner[i] != owner[j]) | (abs(along[i] - along[j]) > np.pi * h)) & loaded[i] & loaded[j]
+    keep = loaded[i] & loaded[j]
     i, j = i[keep], j[keep]
+    e = np.concatenate([np.diff(x, axis=0) for x in strands])
     r = mid[j] - mid[i]
     R = np.linalg.norm(r, axis=1)
     writhe = np.einsum("kc,kc->k", e[i], np.cross(r, e[j])) / R**3 / (2 * np.pi)
-    shortening = np.concatenate(rest) / length
+    shortening = np.concatenate(rest) / np.linalg.norm(e, axis=1)
     return Pairs(i, j, writhe, (2 * h / R) ** 2, shortening[i] * shortening[j])
 
 

@@ -54,14 +54,10 @@ def runs(choice: Choice) -> dict[str, Spec]:
 
 
 def energies(result: Result) -> tuple[Floats, Floats]:
-    """Displacement in units of L, and the energy beyond that of strands that lie apart, in units of B/L.
-
-    For R2 those have the bending energy of the arc at the start; for R1 and R3 they are straight: none.
-    """
+    """Displacement in units of L, and the energy beyond that of strands lying apart, in units of B/L."""
     report = Reidemeister.report(result)
-    energy = elastic_energy(result) / report["B_over_L_J"]
-    apart = energy[0] if report["move"] == "R2" else 0.0
-    return result.dataset["displacement"].values / report["length_m"], energy - apart
+    energy = (elastic_energy(result) - report["energy_apart_J"]) / report["B_over_L_J"]
+    return result.dataset["displacement"].values / report["length_m"], energy
 
 
 def move_paths(results: Mapping[str, Result]) -> Table:

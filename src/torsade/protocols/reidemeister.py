@@ -163,7 +163,11 @@ class Reidemeister(Pulled):
 
     @classmethod
     def report(cls, result: Result) -> dict[str, Any]:
-        """The numbers of a result under the keys of `--json`; energies in J and, from B/L, without unit."""
+        """The numbers of a result under the keys of `--json`.
+
+        Energies are all that is stored; energy_apart_J is that of the same strands lying apart: for R2 the
+        bending energy of the arc at the start; for R1 and R3 they are straight, and have none.
+        """
         data, attrs, spec = result.dataset, result.dataset.attrs, cls(**result.spec)
         B = spec.fiber_material.E_b * spec.section.I
         energy = elastic_energy(result)
@@ -183,6 +187,7 @@ class Reidemeister(Pulled):
                 f"energy_{kind}_J": data[f"energy_{kind}"].values.tolist()
                 for kind in ("stretch", "bend", "twist", "contact")
             },
+            "energy_apart_J": float(energy[0]) if spec.move == "R2" else 0.0,
             "energy_start_J": float(energy[began]),
             "energy_top_J": float(energy[top]),
             "energy_end_J": float(energy[-1]),
