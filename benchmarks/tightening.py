@@ -23,6 +23,7 @@ from torsade.results import Result
 PAGE = Path(__file__).parents[1] / "docs" / "tightening.md"
 
 KNOT_NUMBERS = (
+    "still_at_s",
     "end_to_end_m",
     "h_kappa_max",
     "total_twist_rad",
@@ -115,7 +116,7 @@ def changes(rows: Sequence[dict[str, Any]], names: Sequence[str], ways: Sequence
         plain = row["ways"]["plain"]
         label = row["run"].removeprefix("tighten ").removeprefix("reidemeister ")
         for name in names:
-            if abs(plain[name]) < NOTHING:
+            if plain[name] is None or abs(plain[name]) < NOTHING:
                 continue
             others = [row["ways"][way][name] if way in row["ways"] else None for way in ways]
             body.append([label, name, f"{plain[name]:.4g}", *(_change(name, plain[name], x) for x in others)])
@@ -123,7 +124,7 @@ def changes(rows: Sequence[dict[str, Any]], names: Sequence[str], ways: Sequence
 
 
 def _change(name: str, before: float, after: float | None) -> str:
-    """A change in per cent, or of `SMALL` what the number becomes."""
+    """A change in per cent, or of `SMALL` what the number becomes; a dash where it is not known."""
     if after is None:
         return "-"
     return f"{after:.4g}" if name in SMALL else f"{100 * (after / before - 1):+.2f} %"
