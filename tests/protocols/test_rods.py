@@ -132,6 +132,18 @@ def test_a_quench_starts_on_its_way_and_breaks_where_it_would_if_bent_slowly(spe
     assert report["fragments"] == 6
 
 
+@pytest.mark.parametrize("speed", ["3 m/s", "5 m/s", "10 m/s"])
+def test_a_quench_that_begins_nearly_straight_bends_to_one_side(speed: str) -> None:
+    """Its ends are up to 99.9 % of the length apart, and near each other at the speed given."""
+    spec = SnapQuench(speed=speed)
+    cascade = spec.driven()
+    x, v = cascade.motion.state.x, cascade.motion.state.v
+    assert x[:, 1].min() >= -1e-12
+    assert x[25, 1] > 1e-3
+    assert v[0, 0] - v[-1, 0] == pytest.approx(spec.speed, rel=1e-3)
+    assert v[25, 1] > spec.speed
+
+
 def test_the_least_fragment_falls_with_speed_where_that_is_asked_for() -> None:
     law = {"fragment_law": "quarter-power"}
     assert SnapQuench(speed="3 mm/s", **law).least_fragment == pytest.approx(0.03)
