@@ -28,7 +28,7 @@ NEAR_LAMBDA = (40, 48, 56, 50, 44, 52, 54)
 AWAY = 0.02
 """Distance from the break and from the ends beyond which the rise of curvature is looked at [m]."""
 
-STEPS = 1000
+STEPS = 4000
 """Moments at which it is looked at."""
 
 

@@ -30,6 +30,7 @@ SHORT = SnapTwist(twist="60 deg", duration="0.4 ms", frames=20)
         (SnapQuench, {"speed": "1 m/s", "approach": "1 s"}, r"an approach of 1 s at 1000 mm/s is longer"),
         (SnapQuench, {"twist": 1}, r"snap-quench bends a rod without twist"),
         (Pendulum, {"mass": "1 mg", "mass_radius": "1 mm"}, r"moment of inertia is 5e-13 .* less than"),
+        (Pendulum, {"turn": 0}, r"turn is 0; give an angle above 0 rad"),
         (Pendulum, {"angle": 1}, r"no field 'angle'; did you mean 'turn'\?"),
     ],
 )
@@ -43,6 +44,7 @@ def test_unfit_specifications_are_refused_in_a_sentence(protocol: type, fields: 
     [
         (SnapTwist(twist="400 deg"), r"a twist of 400 deg breaks the straight rod, .* less than 361"),
         (SnapTwist(sigma_c="1 GPa"), r"would break at a curvature of 751.9 1/m, .* give a smaller sigma_c"),
+        (SnapTwist(sigma_c="1 kPa"), r"breaks all but straight, .* give a larger sigma_c"),
         (SnapTwist(step="10 us"), r"a step of 1e-05 s is not stable with edges of 4.8 mm"),
         (SnapTwist(frames=5000), r"5000 frames in 0.002057 s are .* less than a step of 1e-06 s; give fewer"),
     ],
