@@ -1,0 +1,267 @@
+"""Movies of fibers in motion: one camera that stays, tubes that move, the time and a scale on every picture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from torsade.errors import TorsadeError, counted
+from torsade.view.camera import SAMPLE, View, best_side, frame, knot_body
+from torsade.view.captions import Captions, Clock, Ring
+from torsade.view.cascade import THICKER
+from torsade.view.colours import strain_colour, strand_colour, stress_colour
+from torsade.view.encode import ENDINGS, encoder
+from torsade.view.moments import Moment, Moments
+from torsade.view.overlay import STRAIN, STRESS
+from torsade.view.scene import lit_by_lamp, shadow_pieces
+from torsade.view.stage import Stage
+from torsade.view.tube import divisions, smooth_centerline, tube
+
+if TYPE_CHECKING:
+    import xarray
+
+__all__ = ["COLOURS", "movie", "sides"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Pixels = NDArray[np.uint8]
+
+COLOURS = ("strain", "stress", "strands")
+"""What colours can say: strain of fibers, stress over strength of rods that break, which strand or piece."""
+
+SIZE, FPS, SECONDS = (1280, 720), 30.0, 8.0
+
+LEAD, TAIL = 0.08, 0.08
+"""How long a rod is seen before it breaks, and the last moment of any movie, as shares of the movie."""
+
+FLASH = 0.05
+"""How long a break is marked, as a share of the movie."""
+
+SIDES, SPACING, ROUNDING = 32, 0.25, 0.3
+"""Of tubes: vertices around, distance of rings and radius of the edges of caps, in radii."""
+
+LOOKED_AT = 40
+"""Moments that the camera of a knot is chosen by."""
+
+
+def movie(
+    dataset: xarray.Dataset,
+    path: str | Path,
+    *,
+    seconds: float = SECONDS,
+    fps: float = FPS,
+    size: tuple[int, int] = SIZE,
+    frames: tuple[int, int] | None = None,
+    colour: str | None = None,
+    whole: bool = False,
+    progress: Callable[[float, str], None] | None = None,
+) -> Path:
+    """Write a movie of a result that goes on in time, such as a knot being pulled or a rod that breaks.
+
+    Time runs evenly; between stored frames nodes move straight. The camera stays where it is. Rods that break
+    are drawn three times as thick as they are, as in their pictures.
+
+    Parameters
+    ----------
+    dataset : with `position (time, node, space)` [m]
+    path : the file to write: .mp4 (H.264, plays everywhere) or .gif
+    seconds : how long the movie lasts
+    fps : pictures a second
+    size : width and height [pixels], rounded to multiples of 16
+    frames : first and last stored frame to show, from 0, or from the last one if negative; without it all, or
+        of a rod that breaks those from just before its first break on
+    colour : `strain`, `stress` over strength, or `strands`, one colour for each strand or piece; by default
+        strain, and stress of rods that break
+    whole : hold all of every fiber in view, not the knot alone
+    progress : called with the share done and what is going on
+
+    Returns
+    -------
+    The path of the file.
+
+    Raises
+    ------
+    TorsadeError
+        When there is nothing that moves, an option makes no sense, or the file cannot be written.
+    """
+    path, tell = Path(path), progress or (lambda share, note: None)
+    moments = Moments(dataset, frames)
+    pictures = _pictures(path, seconds, fps)
+    colour = _colour(dataset, moments, colour)
+    shots = list(_shots(moments, pictures))
+    shooting = _Shooting(moments, sides(size), colour, whole, _held(dataset))
+    span = moments.times[-1] - moments.times[0]
+    shares = LEAD * moments.broken_at_first + TAIL
+    captions = Captions(
+        shooting.view,
+        shooting.unit,
+        Clock.over(span),
+        seconds * (1.0 - shares) / span,
+        {"strain": STRAIN, "stress": STRESS}.get(colour),
+    )
+    with encoder(path, shooting.view.size, fps) as add, Stage(shooting.view, samples=8) as stage:
+        for k, shot in enumerate(shots):
+            tell(k / pictures, f"picture {k + 1} of {pictures}")
+            moment = moments.before_the_break() if shot.before else moments.at(shot.time)
+            picture = shooting.picture(stage, moment)
+            note = counted(len(moment.strands), "piece") if moments.breaking else ""
+            add(captions.on(picture, shot.time, note, shooting.rings(moment, shot)))
+    return path
+
+
+def sides(size: tuple[int, int]) -> tuple[int, int]:
+    """A width and a height [pixels] rounded to multiples of 16, as codecs want them.
+
+    Raises
+    ------
+    TorsadeError
+        When they are not from 64 to 8192.
+    """
+    width, height = (16 * round(side / 16) if math.isfinite(side) else 0 for side in size)
+    if not (64 <= width <= 8192 and 64 <= height <= 8192):
+        raise TorsadeError(
+            f"the size of the movie is {size[0]} x {size[1]}; give a width and a height from 64 to 8192 "
+            "pixels, such as 1280x720"
+        )
+    return width, height
+
+
+class _Shot(NamedTuple):
+    """One picture: the time it shows [s], whether before the break there, and how old breaks are by then.
+
+    `ages` are in movies, by number of the break, of those that happened.
+    """
+
+    time: float
+    before: bool
+    ages: list[float]
+
+
+def _shots(moments: Moments, pictures: int) -> Iterator[_Shot]:
+    """What every picture of the movie shows: a rod before it breaks, motion at an even pace, the end."""
+    lead = LEAD if moments.broken_at_first else 0.0
+    begin, end = float(moments.times[0]), float(moments.times[-1])
+    moving = 1.0 - lead - TAIL
+    when = [lead + moving * (b.time - begin) / (end - begin) for b in moments.breaks]
+    for k in range(pictures):
+        at = k / max(pictures - 1, 1)
+        share = min(max((at - lead) / moving, 0.0), 1.0)
+        yield _Shot(begin + share * (end - begin), at < lead, [at - w for w in when if w <= at])
+
+
+class _Shooting:
+    """A camera chosen once, and tubes that keep their triangles from picture to picture.
+
+    Lengths of the view are in `unit` [m], the radius of the tubes, from `_origin`.
+    """
+
+    def __init__(
+        self, moments: Moments, size: tuple[int, int], colour: str, whole: bool, held: float
+    ) -> None:
+        self._colour, self._closed, self._breaks = colour, moments.closed, moments.breaks
+        self.unit = moments.radius * (THICKER if moments.breaking else 1.0)
+        self._origin = np.concatenate(moments.at(moments.times[0]).strands).mean(axis=0)
+        self._parts: dict[tuple[int, ...], list[Ints]] = {}
+        seen = [self._nodes(moment) for moment in moments.spread()]
+        if moments.breaking:
+            body = np.concatenate([x for strands in seen for x in strands])
+            self.view = frame(body, 1.0, size, [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], 0.80)
+        else:
+            last = self._nodes(moments.at(held))
+            self.view = _knot_view(seen, last, self._closed, size, whole)
+
+    def _nodes(self, moment: Moment) -> list[Floats]:
+        return [(x - self._origin) / self.unit for x in moment.strands]
+
+    def picture(self, stage: Stage, moment: Moment) -> Pixels:
+        """The strands at a moment, lit, in pixels (height, width, 3), 0 to 255."""
+        nodes = self._nodes(moment)
+        loops = self._closed or [False] * len(nodes)
+        key = tuple(len(x) for x in nodes)
+        if key not in self._parts:
+            self._parts[key] = [divisions(x, loop, SPACING) for x, loop in zip(nodes, loops, strict=True)]
+        meshes = [
+            tube(x, 1.0, loop, sides=SIDES, rounding=ROUNDING, parts=parts)
+            for x, loop, parts in zip(nodes, loops, self._parts[key], strict=True)
+        ]
+        if self._colour == "strands":
+            colours = [np.tile(strand_colour(s), (len(m.vertices), 1)) for s, m in enumerate(meshes)]
+        else:
+            palette = strain_colour if self._colour == "strain" else stress_colour
+            colours = [palette(m.at_vertices(v)) for m, v in zip(meshes, moment.values, strict=True)]
+        curves = [smooth_centerline(x, loop, SAMPLE) for x, loop in zip(nodes, loops, strict=True)]
+        return stage.shown(meshes, lit_by_lamp(meshes, colours, shadow_pieces(curves, loops), self.view))
+
+    def rings(self, moment: Moment, shot: _Shot) -> list[Ring]:
+        """Marks at the breaks that just happened."""
+        nodes = self._nodes(moment)
+        last = np.cumsum([len(x) - 1 for x in nodes]).tolist()
+        rings = []
+        for b, age in zip(self._breaks, shot.ages, strict=False):
+            if age < FLASH and b.node in last[:-1]:
+                p = last.index(b.node)
+                middle = 0.5 * (nodes[p][-1] + nodes[p + 1][0])
+                rings.append(Ring(self.view.pixels(middle[None])[0], age / FLASH))
+        return rings
+
+
+def _knot_view(
+    seen: Sequence[list[Floats]], held: list[Floats], closed: list[bool], size: tuple[int, int], whole: bool
+) -> View:
+    """A camera on the side that shows the knot best while it holds, with the knot in view at all times.
+
+    `seen` are nodes, in radii, at many moments, `held` those when the knot is tightest.
+    """
+    curves = [smooth_centerline(x, loop, SAMPLE) for x, loop in zip(held, closed, strict=True)]
+    body = np.concatenate(knot_body(curves, closed, 1.0))
+    right, toward = best_side([c.x for c in curves], body, 1.0, level=not all(closed))
+    if whole:
+        return frame(np.concatenate([x for s in seen for x in s]), 1.0, size, right, toward, 0.90)
+    every = max(1, len(seen) // LOOKED_AT)
+    bodies = [body]
+    for strands in seen[::every]:
+        curves = [smooth_centerline(x, loop, SAMPLE) for x, loop in zip(strands, closed, strict=True)]
+        points = np.concatenate(knot_body(curves, closed, 1.0))
+        if len(points) < sum(len(c.x) for c in curves) or all(closed):
+            bodies.append(points)
+    return frame(np.concatenate(bodies), 1.0, size, right, toward, 0.68)
+
+
+def _held(dataset: xarray.Dataset) -> float:
+    """When a knot is tightest [s]: at the end, or just before it slips."""
+    time = np.asarray(dataset["time"], np.float64)
+    slipped = dataset.attrs.get("slipped_at_s")
+    if slipped is None:
+        return float(time[-1])
+    return float(time[max(0, int(np.searchsorted(time, slipped * (1 - 1e-9))) - 1)])
+
+
+def _pictures(path: Path, seconds: float, fps: float) -> int:
+    """How many pictures there are, of a movie that can be made."""
+    if path.suffix.lower() not in ENDINGS:
+        raise TorsadeError(
+            f"cannot make a movie called {str(path)!r}; give a name that ends in {' or '.join(ENDINGS)}"
+        )
+    if not (0.1 <= seconds <= 3600 and 1 <= fps <= 120):
+        raise TorsadeError(
+            f"a movie of {seconds:g} s with {fps:g} pictures a second was asked for; give 0.1 to 3600 s and 1 "
+            "to 120 pictures a second"
+        )
+    return max(2, round(seconds * fps))
+
+
+def _colour(dataset: xarray.Dataset, moments: Moments, colour: str | None) -> str:
+    own = "stress" if moments.breaking else "strain"
+    if colour is None:
+        return own if own == "stress" or "log_strain" in dataset else "strands"
+    if colour not in (own, "strands"):
+        raise TorsadeError(
+            f"the colour is to show {colour!r}; of this result it can be {own!r} or 'strands', one colour for "
+            f"each {'piece' if moments.breaking else 'strand'}"
+        )
+    return colour
