@@ -27,17 +27,23 @@ SCALES = ((1e-6, "µm"), (1e-3, "mm"), (1e-2, "cm"), (1.0, "m"))
 
 
 class Clock(NamedTuple):
-    """How times are written: in units of so many seconds, with so many decimals, of such a name."""
+    """How times are written: in units of so many seconds, with so many decimals, of such a name.
+
+    `last` [s] is the one that takes most room.
+    """
 
     unit: float
     decimals: int
     name: str
+    last: float
 
     @classmethod
-    def over(cls, duration: float) -> Clock:
-        """In a unit that suits a duration [s], fine enough that a hundredth of it shows."""
+    def over(cls, first: float, last: float) -> Clock:
+        """In a unit that suits a duration, from first to last [s], fine enough that a hundredth of it shows."""
+        duration = last - first
         unit, name = (1e-6, "µs") if duration < 0.01 else (1e-3, "ms") if duration < 0.5 else (1.0, "s")
-        return cls(unit, max(0, math.ceil(-math.log10(duration / unit / 100.0) - 1e-9)), name)
+        decimals = max(0, math.ceil(-math.log10(duration / unit / 100.0) - 1e-9))
+        return cls(unit, decimals, name, last)
 
     def number(self, time: float) -> str:
         """A time [s], without its unit and without a minus before 0."""
@@ -81,6 +87,7 @@ class Captions:
 
     def __init__(self, view: View, unit: float, clock: Clock, slowed: float, bar: Bar | None) -> None:
         self._view, self._clock = view, clock
+        self._digits = len(clock.number(clock.last))
         self._still = _Layer(drawn(view.size, lambda figure, axes: self._lasting(figure, axes, unit, slowed, bar)))
 
     def on(self, picture: Pixels, time: float, note: str = "", rings: Sequence[Ring] = ()) -> Pixels:
@@ -111,12 +118,13 @@ class Captions:
         """The time above on the left, its last digit always at one place, and what changes with it."""
         (width, height), u = self._view.size, self._view.size[1] / 100.0
         edge = EDGE * width
-        digits = 13.0 * u
-        style = {"color": INK, "va": "baseline"}
         foot = height - edge - 3.0 * u
-        axes.text(edge + digits, foot, self._clock.number(time), fontsize=3.2 * u, ha="right", **style)
-        axes.text(edge + digits + 1.2 * u, foot, self._clock.name, fontsize=3.2 * u, ha="left", **style)
-        axes.text(edge, foot - 4.6 * u, note, fontsize=2.1 * u, ha="left", **style)
+        large, small = {"fontsize": 3.2 * u, "color": INK}, {"fontsize": 2.1 * u, "color": INK}
+        end = edge + (7.6 + 2.85 * self._digits) * u
+        axes.text(edge, foot, r"$t\,=$", **large)
+        axes.text(end, foot, self._clock.number(time), ha="right", **large)
+        axes.text(end + 1.3 * u, foot, self._clock.name, **large)
+        axes.text(edge, foot - 4.6 * u, note, **small)
         patches = require("matplotlib.patches")
         for ring in rings:
             eased = 1.0 - (1.0 - ring.age) ** 2
@@ -128,16 +136,17 @@ class Captions:
 
 
 class _Layer:
-    """A transparent sheet, kept as the pixels that are on it."""
+    """A transparent sheet (height, width, 4), kept as the pixels that are on it."""
 
-    def __init__(self, sheet: Floats) -> None:
-        self._at = np.nonzero(sheet[:, :, 3])
-        inked = sheet[self._at]
-        self._through = 1.0 - inked[:, 3:]
-        self._ink = 255.0 * inked[:, :3] * inked[:, 3:]
+    def __init__(self, sheet: Pixels) -> None:
+        self._at = np.flatnonzero(sheet[:, :, 3])
+        inked = sheet.reshape(-1, 4)[self._at].astype(np.float32)
+        opaque = inked[:, 3:] / 255.0
+        self._through, self._ink = 1.0 - opaque, inked[:, :3] * opaque + 0.5
 
     def over(self, picture: Pixels) -> Pixels:
         """The picture (height, width, 3) with this sheet on top."""
         out = picture.copy()
-        out[self._at] = np.round(picture[self._at] * self._through + self._ink)
+        flat = out.reshape(-1, 3)
+        flat[self._at] = flat[self._at] * self._through + self._ink
         return out

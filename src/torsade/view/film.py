@@ -42,8 +42,14 @@ LEAD, TAIL = 0.08, 0.08
 FLASH = 0.05
 """How long a break is marked, as a share of the movie."""
 
-SIDES, SPACING, ROUNDING = 32, 0.25, 0.3
+SIDES, SPACING, ROUNDING = 24, 0.4, 0.3
 """Of tubes: vertices around, distance of rings and radius of the edges of caps, in radii."""
+
+WIDE, HIGH = 0.82, 0.64
+"""Largest shares of the frame's width and height that what is shown takes."""
+
+ALONG, ACROSS = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+"""A rod bent in its device is seen across the plane of its ends and its middle."""
 
 LOOKED_AT = 40
 """Moments that the camera of a knot is chosen by."""
@@ -95,13 +101,13 @@ def movie(
     colour = _colour(dataset, moments, colour)
     shots = list(_shots(moments, pictures))
     shooting = _Shooting(moments, sides(size), colour, whole, _held(dataset))
-    span = moments.times[-1] - moments.times[0]
+    begin, end = float(moments.times[0]), float(moments.times[-1])
     shares = LEAD * moments.broken_at_first + TAIL
     captions = Captions(
         shooting.view,
         shooting.unit,
-        Clock.over(span),
-        seconds * (1.0 - shares) / span,
+        Clock.over(begin, end),
+        seconds * (1.0 - shares) / (end - begin),
         {"strain": STRAIN, "stress": STRESS}.get(colour),
     )
     with encoder(path, shooting.view.size, fps) as add, Stage(shooting.view, samples=8) as stage:
@@ -167,13 +173,15 @@ class _Shooting:
         self.unit = moments.radius * (THICKER if moments.breaking else 1.0)
         self._origin = np.concatenate(moments.at(moments.times[0]).strands).mean(axis=0)
         self._parts: dict[tuple[int, ...], list[Ints]] = {}
-        seen = [self._nodes(moment) for moment in moments.spread()]
+        looked = list(moments.spread())
+        seen = [self._nodes(moment) for moment in looked]
         if moments.breaking:
             body = np.concatenate([x for strands in seen for x in strands])
-            self.view = frame(body, 1.0, size, [1.0, 0.0, 0.0], [0.0, 0.0, 1.0], 0.80)
+            self.view = _framed(body, size, ALONG, ACROSS)
         else:
-            last = self._nodes(moments.at(held))
-            self.view = _knot_view(seen, last, self._closed, size, whole)
+            holding = [x for m, x in zip(looked, seen, strict=True) if m.time <= held * (1 + 1e-9)]
+            tied = [*holding[:: max(1, len(holding) // LOOKED_AT)], self._nodes(moments.at(held))]
+            self.view = _knot_view(seen if whole else tied, self._closed, size, whole)
 
     def _nodes(self, moment: Moment) -> list[Floats]:
         return [(x - self._origin) / self.unit for x in moment.strands]
@@ -210,26 +218,26 @@ class _Shooting:
         return rings
 
 
-def _knot_view(
-    seen: Sequence[list[Floats]], held: list[Floats], closed: list[bool], size: tuple[int, int], whole: bool
-) -> View:
-    """A camera on the side that shows the knot best while it holds, with the knot in view at all times.
+def _knot_view(shapes: Sequence[list[Floats]], closed: list[bool], size: tuple[int, int], whole: bool) -> View:
+    """A camera on the side that shows the last shape best, with the knot, or all, of every shape in view.
 
-    `seen` are nodes, in radii, at many moments, `held` those when the knot is tightest.
+    Shapes are the nodes of all strands, in radii.
     """
-    curves = [smooth_centerline(x, loop, SAMPLE) for x, loop in zip(held, closed, strict=True)]
-    body = np.concatenate(knot_body(curves, closed, 1.0))
-    right, toward = best_side([c.x for c in curves], body, 1.0, level=not all(closed))
-    if whole:
-        return frame(np.concatenate([x for s in seen for x in s]), 1.0, size, right, toward, 0.90)
-    every = max(1, len(seen) // LOOKED_AT)
-    bodies = [body]
-    for strands in seen[::every]:
-        curves = [smooth_centerline(x, loop, SAMPLE) for x, loop in zip(strands, closed, strict=True)]
-        points = np.concatenate(knot_body(curves, closed, 1.0))
-        if len(points) < sum(len(c.x) for c in curves) or all(closed):
-            bodies.append(points)
-    return frame(np.concatenate(bodies), 1.0, size, right, toward, 0.68)
+    drawn = [
+        [smooth_centerline(x, loop, SAMPLE) for x, loop in zip(strands, closed, strict=True)]
+        for strands in shapes
+    ]
+    bodies = [np.concatenate(knot_body(curves, closed, 1.0)) for curves in drawn]
+    right, toward = best_side([c.x for c in drawn[-1]], bodies[-1], 1.0, level=not all(closed))
+    seen = [c.x for curves in drawn for c in curves] if whole else bodies
+    return _framed(np.concatenate(seen), size, right, toward)
+
+
+def _framed(body: Floats, size: tuple[int, int], right: Floats, toward: Floats) -> View:
+    """The view that the body (n, 3) fills as far as what is written above and below leaves room."""
+    view = frame(body, 1.0, size, right, toward, WIDE)
+    up = view.pixels(body)[:, 1]
+    return view if np.ptp(up) < HIGH * size[1] else frame(body, 1.0, size, right, toward, HIGH)
 
 
 def _held(dataset: xarray.Dataset) -> float:

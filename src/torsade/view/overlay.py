@@ -14,6 +14,7 @@ from torsade.view.camera import View
 from torsade.view.colours import STRAIN_MAX, strain_colormap, stress_colormap
 
 Floats = NDArray[np.float64]
+Pixels = NDArray[np.uint8]
 INK = "#262a2e"
 FONT = {"font.family": "sans-serif", "font.sans-serif": ["Helvetica", "Arial", "DejaVu Sans"]}
 BAR_WIDTH, BAR_HEIGHT = 0.30, 0.016
@@ -61,13 +62,13 @@ def draw_over(
         if bar:
             draw_bar(figure, emptiest_corner(np.min(picture, axis=2) < 0.98), view.size[1] / 100.0, STRAIN)
 
-    layer = drawn((picture.shape[1], picture.shape[0]), draw)
+    layer = drawn((picture.shape[1], picture.shape[0]), draw) / 255.0
     alpha = layer[:, :, 3:]
     return np.asarray(picture * (1.0 - alpha) + layer[:, :, :3] * alpha)
 
 
-def drawn(size: tuple[int, int], draw: Callable[[Any, Any], None]) -> Floats:
-    """What is drawn on a transparent sheet of that width and height: (height, width, 4) of RGBA, 0 to 1.
+def drawn(size: tuple[int, int], draw: Callable[[Any, Any], None]) -> Pixels:
+    """What is drawn on a transparent sheet of that width and height: (height, width, 4) of RGBA, 0 to 255.
 
     `draw` is given a figure and axes over all of it that count pixels from the lower left.
     """
@@ -81,7 +82,7 @@ def drawn(size: tuple[int, int], draw: Callable[[Any, Any], None]) -> Floats:
         axes.axis("off")
         draw(figure, axes)
         canvas.draw()
-        return np.asarray(canvas.buffer_rgba(), dtype=np.float64) / 255.0
+        return np.asarray(canvas.buffer_rgba())
 
 
 def _draw_mark(axes: Any, mark: Mark, view: View, pixels: Sequence[Floats], radii: Floats) -> None:

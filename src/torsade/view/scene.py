@@ -33,6 +33,9 @@ Floats = NDArray[np.float64]
 
 SUPERSAMPLING = 2
 
+TURNED_AWAY = -0.3
+"""Cosine to the camera below which a vertex of a tube is in no triangle that is seen."""
+
 
 def render(
     strands: Sequence[ArrayLike],
@@ -222,10 +225,10 @@ def lit_by_lamp(meshes: Sequence[Mesh], colours: Sequence[Floats], pieces: Piece
     result = []
     for mesh, rgb in zip(meshes, colours, strict=True):
         sky, shade = np.zeros((2, len(rgb)))
-        seen = _near_frame(view, mesh.vertices)
-        sky[seen], shade[seen] = occlusion(mesh.vertices[seen], mesh.normals[seen], pieces, 1.0, LAMP @ axes)
         eye = camera - mesh.vertices
         eye /= np.linalg.norm(eye, axis=1, keepdims=True)
+        seen = _near_frame(view, mesh.vertices) & (np.sum(mesh.normals * eye, axis=1) > TURNED_AWAY)
+        sky[seen], shade[seen] = occlusion(mesh.vertices[seen], mesh.normals[seen], pieces, 1.0, LAMP @ axes)
         result.append(lit(rgb, mesh.normals, eye, axes, sky, shade))
     return result
 

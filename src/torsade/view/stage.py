@@ -81,6 +81,7 @@ class Stage:
                 surface.point_data["colour"] = values
         plotter = self._plotter
         plotter.renderer.reset_camera_clipping_range()
+        plotter.render()  # once it has been, a screenshot takes what is there
         cut = slice(self._k * MARGIN, -self._k * MARGIN)
         return np.asarray(plotter.screenshot(None, return_img=True))[cut, cut, :3]
 
