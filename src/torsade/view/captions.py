@@ -39,7 +39,7 @@ class Clock(NamedTuple):
 
     @classmethod
     def over(cls, first: float, last: float) -> Clock:
-        """In a unit that suits a duration, from first to last [s], fine enough that a hundredth of it shows."""
+        """In a unit that suits the time from first to last [s], fine enough that a hundredth of it shows."""
         duration = last - first
         unit, name = (1e-6, "µs") if duration < 0.01 else (1e-3, "ms") if duration < 0.5 else (1.0, "s")
         decimals = max(0, math.ceil(-math.log10(duration / unit / 100.0) - 1e-9))
@@ -88,7 +88,9 @@ class Captions:
     def __init__(self, view: View, unit: float, clock: Clock, slowed: float, bar: Bar | None) -> None:
         self._view, self._clock = view, clock
         self._digits = len(clock.number(clock.last))
-        self._still = _Layer(drawn(view.size, lambda figure, axes: self._lasting(figure, axes, unit, slowed, bar)))
+        self._still = _Layer(
+            drawn(view.size, lambda figure, axes: self._lasting(figure, axes, unit, slowed, bar))
+        )
 
     def on(self, picture: Pixels, time: float, note: str = "", rings: Sequence[Ring] = ()) -> Pixels:
         """The picture (height, width, 3), 0 to 255, with the time [s], a note below it, and rings."""
@@ -108,9 +110,7 @@ class Captions:
             0.5 * (left + right), foot + 1.2 * u, f"{length / scale:g} {name}", color=INK, fontsize=1.9 * u,
             ha="center", va="bottom",
         )  # fmt: skip
-        axes.text(
-            right, height - edge, pace(slowed), color=MUTED, fontsize=1.75 * u, ha="right", va="top"
-        )
+        axes.text(right, height - edge, pace(slowed), color=MUTED, fontsize=1.75 * u, ha="right", va="top")
         if bar is not None:
             draw_bar(figure, (EDGE, EDGE + 0.04), u, bar)
 
@@ -120,7 +120,7 @@ class Captions:
         edge = EDGE * width
         foot = height - edge - 3.0 * u
         large, small = {"fontsize": 3.2 * u, "color": INK}, {"fontsize": 2.1 * u, "color": INK}
-        end = edge + (7.6 + 2.85 * self._digits) * u
+        end = edge + (8.0 + 2.85 * self._digits) * u
         axes.text(edge, foot, r"$t\,=$", **large)
         axes.text(end, foot, self._clock.number(time), ha="right", **large)
         axes.text(end + 1.3 * u, foot, self._clock.name, **large)
@@ -130,7 +130,12 @@ class Captions:
             eased = 1.0 - (1.0 - ring.age) ** 2
             axes.add_patch(
                 patches.Circle(
-                    ring.place, (1.5 + 5.0 * eased) * u, fill=False, ec=SLIP, lw=0.45 * u, alpha=1.0 - ring.age
+                    ring.place,
+                    (1.5 + 5.0 * eased) * u,
+                    fill=False,
+                    ec=SLIP,
+                    lw=0.45 * u,
+                    alpha=1.0 - ring.age,
                 )
             )
 

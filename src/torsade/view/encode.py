@@ -20,7 +20,11 @@ Pixels = NDArray[np.uint8]
 ENDINGS = (".mp4", ".gif")
 
 FORMATS = {
-    ".mp4": ("libx264", "yuv420p", ["-crf", "18", "-preset", "medium", "-movflags", "+faststart", "-f", "mp4"]),
+    ".mp4": (
+        "libx264",
+        "yuv420p",
+        ["-crf", "18", "-preset", "medium", "-movflags", "+faststart", "-f", "mp4"],
+    ),
     ".gif": (
         "gif",
         "rgb8",
@@ -34,7 +38,7 @@ FORMATS = {
 def encoder(path: Path, size: tuple[int, int], fps: float) -> Iterator[Callable[[Pixels], None]]:
     """A function that takes one picture (height, width, 3) after the other, 0 to 255, for a movie.
 
-    What is written has a name of its own until the movie is whole, and is removed if it does not come to that.
+    What is written has a name of its own until the movie is whole, and is removed if that does not happen.
 
     Parameters
     ----------
@@ -74,8 +78,8 @@ def encoder(path: Path, size: tuple[int, int], fps: float) -> Iterator[Callable[
     except OSError as error:
         reason = "ffmpeg stopped" if error.errno is None else reason_of(error)
         raise TorsadeError(
-            f"the movie cannot be written to {str(path)!r} ({reason}); give a path in a folder with room that "
-            "can be written"
+            f"the movie cannot be written to {str(path)!r} ({reason}); give a path in a folder with room "
+            "that can be written"
         ) from error
     finally:
         part.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""Movies of fibers in motion: one camera that stays, tubes that move, the time and a scale on every picture."""
+"""Movies of fibers in motion: one camera that stays, tubes that move, time and scale on every picture."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ FLASH = 0.05
 SIDES, SPACING, ROUNDING = 24, 0.4, 0.3
 """Of tubes: vertices around, distance of rings and radius of the edges of caps, in radii."""
 
-WIDE, HIGH = 0.82, 0.64
+WIDE, HIGH = 0.82, 0.68
 """Largest shares of the frame's width and height that what is shown takes."""
 
 ALONG, ACROSS = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
@@ -218,7 +218,9 @@ class _Shooting:
         return rings
 
 
-def _knot_view(shapes: Sequence[list[Floats]], closed: list[bool], size: tuple[int, int], whole: bool) -> View:
+def _knot_view(
+    shapes: Sequence[list[Floats]], closed: list[bool], size: tuple[int, int], whole: bool
+) -> View:
     """A camera on the side that shows the last shape best, with the knot, or all, of every shape in view.
 
     Shapes are the nodes of all strands, in radii.
@@ -236,8 +238,8 @@ def _knot_view(shapes: Sequence[list[Floats]], closed: list[bool], size: tuple[i
 def _framed(body: Floats, size: tuple[int, int], right: Floats, toward: Floats) -> View:
     """The view that the body (n, 3) fills as far as what is written above and below leaves room."""
     view = frame(body, 1.0, size, right, toward, WIDE)
-    up = view.pixels(body)[:, 1]
-    return view if np.ptp(up) < HIGH * size[1] else frame(body, 1.0, size, right, toward, HIGH)
+    tall = np.ptp(view.pixels(body)[:, 1]) + 2.0 * view.scale(view.focus[None])[0]
+    return view if tall < HIGH * size[1] else frame(body, 1.0, size, right, toward, HIGH)
 
 
 def _held(dataset: xarray.Dataset) -> float:
@@ -257,8 +259,8 @@ def _pictures(path: Path, seconds: float, fps: float) -> int:
         )
     if not (0.1 <= seconds <= 3600 and 1 <= fps <= 120):
         raise TorsadeError(
-            f"a movie of {seconds:g} s with {fps:g} pictures a second was asked for; give 0.1 to 3600 s and 1 "
-            "to 120 pictures a second"
+            f"a movie of {seconds:g} s with {fps:g} pictures a second was asked for; give 0.1 to 3600 s and "
+            "1 to 120 pictures a second"
         )
     return max(2, round(seconds * fps))
 
@@ -269,7 +271,7 @@ def _colour(dataset: xarray.Dataset, moments: Moments, colour: str | None) -> st
         return own if own == "stress" or "log_strain" in dataset else "strands"
     if colour not in (own, "strands"):
         raise TorsadeError(
-            f"the colour is to show {colour!r}; of this result it can be {own!r} or 'strands', one colour for "
-            f"each {'piece' if moments.breaking else 'strand'}"
+            f"the colour is to show {colour!r}; of this result it can be {own!r} or 'strands', one colour "
+            f"for each {'piece' if moments.breaking else 'strand'}"
         )
     return colour

@@ -109,9 +109,7 @@ class Moments:
             return self._split(time, *self._frame(k))
         (x, values, start), (y, after, bounds) = self._frame(k), self._frame(k + 1)
         rows = _same_rows(start, bounds)
-        return self._split(
-            time, (1.0 - s) * x[rows] + s * y, (1.0 - s) * values[rows] + s * after, bounds
-        )
+        return self._split(time, (1.0 - s) * x[rows] + s * y, (1.0 - s) * values[rows] + s * after, bounds)
 
     def before_the_break(self) -> Moment:
         """A rod at the first frame that is wanted, as it was before it broke there."""
@@ -149,7 +147,9 @@ def _checked(dataset: xarray.Dataset, frames: tuple[int, int] | None) -> tuple[F
     time = np.asarray(dataset["time"], np.float64)
     n = len(time)
     if n < 2:
-        raise TorsadeError(f"{what} has {counted(n, 'frame')}, and a movie needs 2; run it with more --frames")
+        raise TorsadeError(
+            f"{what} has {counted(n, 'frame')}, and a movie needs 2; run it with more --frames"
+        )
     first, last = (f + n if f < 0 else f for f in frames or (0, n - 1))
     if not 0 <= first < last < n:
         asked = "{}:{}".format(*frames or (0, n - 1))

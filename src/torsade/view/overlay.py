@@ -54,6 +54,7 @@ def draw_over(
     """
     if not (bar or marks or arrows):
         return picture
+
     def draw(figure: Any, axes: Any) -> None:
         draw_arrows(axes, arrows, view, strands, radius)
         pixels = [view.pixels(x) for x in strands]
@@ -134,7 +135,10 @@ class Bar(NamedTuple):
 
 
 STRAIN = Bar(
-    strain_colormap, STRAIN_MAX, (0.0, 0.2, 0.4, 0.6), r"strain  $\log\,(1 + \sqrt{\varepsilon\!:\!\varepsilon})$"
+    strain_colormap,
+    STRAIN_MAX,
+    (0.0, 0.2, 0.4, 0.6),
+    r"strain  $\log\,(1 + \sqrt{\varepsilon\!:\!\varepsilon})$",
 )
 STRESS = Bar(stress_colormap, 1.0, (0.0, 0.5, 1.0), "stress / strength")
 

@@ -218,7 +218,9 @@ def shadow_pieces(curves: Sequence[SmoothCurve], loops: Sequence[bool]) -> Piece
     )
 
 
-def lit_by_lamp(meshes: Sequence[Mesh], colours: Sequence[Floats], pieces: Pieces, view: View) -> list[Floats]:
+def lit_by_lamp(
+    meshes: Sequence[Mesh], colours: Sequence[Floats], pieces: Pieces, view: View
+) -> list[Floats]:
     """sRGB colours (n, 3) of all vertices as the camera sees them, lit and in each other's shadow."""
     axes = np.array([view.right, view.up, view.toward])
     camera = view.focus + view.distance * view.toward
