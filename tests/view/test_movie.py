@@ -36,7 +36,8 @@ def slid() -> xr.Dataset:
     s = np.linspace(-12.0, 12.0, 25)
     still = np.stack([s, 0 * s, 0 * s], axis=1)
     across = np.stack([0 * s, s, 0 * s + 2.0], axis=1)
-    positions = np.stack([np.concatenate([still, across + np.array([0.0, dy, 0.0])]) for dy in (0.0, 2.0, 6.0)])
+    along = np.array([0.0, 1.0, 0.0])
+    positions = np.stack([np.concatenate([still, across + dy * along]) for dy in (0.0, 2.0, 6.0)])
     return xr.Dataset(
         {
             "position": (("time", "node", "space"), positions),
