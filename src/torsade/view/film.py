@@ -20,7 +20,7 @@ from torsade.view.moments import Moment, Moments
 from torsade.view.overlay import STRAIN, STRESS
 from torsade.view.scene import lit_by_lamp, shadow_pieces
 from torsade.view.stage import Stage
-from torsade.view.tube import divisions, smooth_centerline, tube
+from torsade.view.tube import SmoothCurve, divisions, smooth_centerline, tube
 
 if TYPE_CHECKING:
     import xarray
@@ -173,15 +173,32 @@ class _Shooting:
         self.unit = moments.radius * (THICKER if moments.breaking else 1.0)
         self._origin = np.concatenate(moments.at(moments.times[0]).strands).mean(axis=0)
         self._parts: dict[tuple[int, ...], list[Ints]] = {}
-        looked = list(moments.spread())
-        seen = [self._nodes(moment) for moment in looked]
-        if moments.breaking:
-            body = np.concatenate([x for strands in seen for x in strands])
-            self.view = _framed(body, size, ALONG, ACROSS)
+        looked = [(moment.time, self._nodes(moment)) for moment in moments.spread()]
+        if moments.breaking or whole:
+            body = np.concatenate([x for _, strands in looked for x in strands])
         else:
-            holding = [x for m, x in zip(looked, seen, strict=True) if m.time <= held * (1 + 1e-9)]
-            tied = [*holding[:: max(1, len(holding) // LOOKED_AT)], self._nodes(moments.at(held))]
-            self.view = _knot_view(seen if whole else tied, self._closed, size, whole)
+            body = self._knots(looked[:: max(1, len(looked) // LOOKED_AT)], held)
+        right, toward = (ALONG, ACROSS) if moments.breaking else self._side(self._nodes(moments.at(held)))
+        self.view = _framed(body, size, right, toward)
+
+    def _curves(self, nodes: Sequence[Floats]) -> list[SmoothCurve]:
+        loops = self._closed or [False] * len(nodes)
+        return [smooth_centerline(x, loop, SAMPLE) for x, loop in zip(nodes, loops, strict=True)]
+
+    def _knots(self, looked: Sequence[tuple[float, list[Floats]]], held: float) -> Floats:
+        """Points (n, 3) of the knot at all times; when it has slipped, as long as it is not undone."""
+        bodies = [
+            (time <= held * (1 + 1e-9), np.concatenate(knot_body(self._curves(nodes), self._closed, 1.0)))
+            for time, nodes in looked
+        ]
+        longest = max((len(x) for holds, x in bodies if holds), default=math.inf)
+        return np.concatenate([x for holds, x in bodies if holds or len(x) <= longest])
+
+    def _side(self, nodes: Sequence[Floats]) -> tuple[Floats, Floats]:
+        """Directions right and toward the camera from which a knot is plainest."""
+        curves = self._curves(nodes)
+        body = np.concatenate(knot_body(curves, self._closed, 1.0))
+        return best_side([c.x for c in curves], body, 1.0, level=not all(self._closed))
 
     def _nodes(self, moment: Moment) -> list[Floats]:
         return [(x - self._origin) / self.unit for x in moment.strands]
@@ -202,8 +219,8 @@ class _Shooting:
         else:
             palette = strain_colour if self._colour == "strain" else stress_colour
             colours = [palette(m.at_vertices(v)) for m, v in zip(meshes, moment.values, strict=True)]
-        curves = [smooth_centerline(x, loop, SAMPLE) for x, loop in zip(nodes, loops, strict=True)]
-        return stage.shown(meshes, lit_by_lamp(meshes, colours, shadow_pieces(curves, loops), self.view))
+        pieces = shadow_pieces(self._curves(nodes), loops)
+        return stage.shown(meshes, lit_by_lamp(meshes, colours, pieces, self.view))
 
     def rings(self, moment: Moment, shot: _Shot) -> list[Ring]:
         """Marks at the breaks that just happened."""
@@ -216,23 +233,6 @@ class _Shooting:
                 middle = 0.5 * (nodes[p][-1] + nodes[p + 1][0])
                 rings.append(Ring(self.view.pixels(middle[None])[0], age / FLASH))
         return rings
-
-
-def _knot_view(
-    shapes: Sequence[list[Floats]], closed: list[bool], size: tuple[int, int], whole: bool
-) -> View:
-    """A camera on the side that shows the last shape best, with the knot, or all, of every shape in view.
-
-    Shapes are the nodes of all strands, in radii.
-    """
-    drawn = [
-        [smooth_centerline(x, loop, SAMPLE) for x, loop in zip(strands, closed, strict=True)]
-        for strands in shapes
-    ]
-    bodies = [np.concatenate(knot_body(curves, closed, 1.0)) for curves in drawn]
-    right, toward = best_side([c.x for c in drawn[-1]], bodies[-1], 1.0, level=not all(closed))
-    seen = [c.x for curves in drawn for c in curves] if whole else bodies
-    return _framed(np.concatenate(seen), size, right, toward)
 
 
 def _framed(body: Floats, size: tuple[int, int], right: Floats, toward: Floats) -> View:
