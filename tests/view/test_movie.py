@@ -16,6 +16,8 @@ from torsade.errors import TorsadeError
 from torsade.protocols import SnapTwist
 from torsade.view import film
 from torsade.view.captions import Clock, nice_length, pace
+from torsade.view.colours import strain_colour
+from torsade.view.encode import encoder
 from torsade.view.moments import Moments
 
 pytest.importorskip("pyvista")
@@ -145,6 +147,17 @@ def test_a_knot_in_motion_and_a_gif(tmp_path: Path) -> None:
     assert np.abs(seen[0] - seen[-1]).max() > 100
 
 
+def test_colours_are_kept(tmp_path: Path) -> None:
+    """Strain colours are measurements: what is read back is what was drawn, to the loss of the codec."""
+    path = tmp_path / "colours.mp4"
+    colours = np.round(255 * strain_colour([0.0, 0.2, 0.4, 0.6])).astype(np.uint8)
+    with encoder(path, (128, 64), 5.0) as add:
+        add(np.repeat(np.repeat(colours[None], 32, axis=1), 64, axis=0))
+    about, seen = pictures(path)
+    assert "bt709" in about
+    np.testing.assert_allclose(seen[0, 32, 16::32], colours, atol=4)
+
+
 def test_an_interrupted_movie_leaves_the_file_that_was_there(broken, tmp_path: Path) -> None:
     path = tmp_path / "rod.mp4"
     path.write_bytes(b"an earlier one")
@@ -191,7 +204,9 @@ def test_times_and_lengths_are_written_as_people_do() -> None:
     assert Clock.over(0.0, 2.06e-3).number(1.2345e-3) == "1234"
     assert Clock.over(0.0, 2.06e-3).name == "µs"
     assert Clock.over(0.0, 1.0).number(0.25) == "0.25"
-    assert Clock.over(-1.0, 1.0).number(-1e-9) == "0.00"
+    assert Clock.over(-1.0, 0.5).number(-1e-9) == "0.00"
+    assert Clock.over(-1.0, 0.5).number(-0.25) == "\N{MINUS SIGN}0.25"
+    assert Clock.over(-1.0, 0.5).digits == 5
     assert [nice_length(x) for x in (1.0, 0.049, 7.3)] == pytest.approx([1.0, 0.02, 5.0])
     assert [pace(x) for x in (1.0, 3912.0, 0.5, 1.24)] == [
         "real time",

@@ -29,13 +29,13 @@ SCALES = ((1e-6, "µm"), (1e-3, "mm"), (1e-2, "cm"), (1.0, "m"))
 class Clock(NamedTuple):
     """How times are written: in units of so many seconds, with so many decimals, of such a name.
 
-    `last` [s] is the one that takes most room.
+    `digits` is the room that they take.
     """
 
     unit: float
     decimals: int
     name: str
-    last: float
+    digits: int
 
     @classmethod
     def over(cls, first: float, last: float) -> Clock:
@@ -43,11 +43,13 @@ class Clock(NamedTuple):
         duration = last - first
         unit, name = (1e-6, "µs") if duration < 0.01 else (1e-3, "ms") if duration < 0.5 else (1.0, "s")
         decimals = max(0, math.ceil(-math.log10(duration / unit / 100.0) - 1e-9))
-        return cls(unit, decimals, name, last)
+        clock = cls(unit, decimals, name, 0)
+        return clock._replace(digits=max(len(clock.number(time)) for time in (first, last)))
 
     def number(self, time: float) -> str:
-        """A time [s], without its unit and without a minus before 0."""
-        return f"{round(time / self.unit, self.decimals) + 0.0:.{self.decimals}f}"
+        """A time [s] without its unit, and 0 without a minus."""
+        text = f"{round(time / self.unit, self.decimals) + 0.0:.{self.decimals}f}"
+        return text.replace("-", "\N{MINUS SIGN}")
 
 
 class Ring(NamedTuple):
@@ -87,7 +89,6 @@ class Captions:
 
     def __init__(self, view: View, unit: float, clock: Clock, slowed: float, bar: Bar | None) -> None:
         self._view, self._clock = view, clock
-        self._digits = len(clock.number(clock.last))
         self._still = _Layer(
             drawn(view.size, lambda figure, axes: self._lasting(figure, axes, unit, slowed, bar))
         )
@@ -120,7 +121,7 @@ class Captions:
         edge = EDGE * width
         foot = height - edge - 3.0 * u
         large, small = {"fontsize": 3.2 * u, "color": INK}, {"fontsize": 2.1 * u, "color": INK}
-        end = edge + (8.0 + 2.85 * self._digits) * u
+        end = edge + (8.0 + 2.85 * self._clock.digits) * u
         axes.text(edge, foot, r"$t\,=$", **large)
         axes.text(end, foot, self._clock.number(time), ha="right", **large)
         axes.text(end + 1.3 * u, foot, self._clock.name, **large)

@@ -19,19 +19,24 @@ Pixels = NDArray[np.uint8]
 
 ENDINGS = (".mp4", ".gif")
 
+HD = ["-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "bt709"]
+"""How colours are to be read: players guess otherwise, and these colours are measurements."""
+
 FORMATS = {
     ".mp4": (
         "libx264",
         "yuv420p",
-        ["-crf", "18", "-preset", "medium", "-movflags", "+faststart", "-f", "mp4"],
+        ["-vf", "scale=out_color_matrix=bt709:out_range=tv", *HD, "-crf", "18", "-movflags", "+faststart"],
+        "mp4",
     ),
     ".gif": (
         "gif",
-        "rgb8",
-        ["-filter_complex", "split[a][b];[a]palettegen=stats_mode=diff[p];[b][p]paletteuse", "-f", "gif"],
+        "pal8",
+        ["-filter_complex", "split[a][b];[a]palettegen[p];[b][p]paletteuse=dither=bayer:bayer_scale=4"],
+        "gif",
     ),
 }
-"""Codec, kind of pixels and further options of ffmpeg, by the ending of a file's name."""
+"""Codec, kind of pixels, further options and container of ffmpeg, by the ending of a file's name."""
 
 
 @contextmanager
@@ -51,7 +56,7 @@ def encoder(path: Path, size: tuple[int, int], fps: float) -> Iterator[Callable[
     TorsadeError
         When the file cannot be written, or imageio-ffmpeg is not there.
     """
-    codec, pixels, options = FORMATS[path.suffix.lower()]
+    codec, pixels, options, container = FORMATS[path.suffix.lower()]
     ffmpeg = require("imageio_ffmpeg")
     part = private(path, "part")
     try:
@@ -59,7 +64,7 @@ def encoder(path: Path, size: tuple[int, int], fps: float) -> Iterator[Callable[
             pass
         stream = ffmpeg.write_frames(
             str(part), size, fps=fps, codec=codec, pix_fmt_out=pixels, quality=None,
-            output_params=options, ffmpeg_log_level="error",
+            output_params=[*options, "-f", container], ffmpeg_log_level="error",
         )  # fmt: skip
         written = 0
 

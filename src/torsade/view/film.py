@@ -49,7 +49,7 @@ WIDE, HIGH = 0.82, 0.68
 """Largest shares of the frame's width and height that what is shown takes."""
 
 ALONG, ACROSS = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
-"""A rod bent in its device is seen across the plane of its ends and its middle."""
+"""The sides from which a rod bent in its device, and moves, are seen."""
 
 LOOKED_AT = 40
 """Moments that the camera of a knot is chosen by."""
@@ -106,7 +106,7 @@ def movie(
     captions = Captions(
         shooting.view,
         shooting.unit,
-        Clock.over(begin, end),
+        Clock.over(begin - moments.origin, end - moments.origin),
         seconds * (1.0 - shares) / (end - begin),
         {"strain": STRAIN, "stress": STRESS}.get(colour),
     )
@@ -116,7 +116,7 @@ def movie(
             moment = moments.before_the_break() if shot.before else moments.at(shot.time)
             picture = shooting.picture(stage, moment)
             note = counted(len(moment.strands), "piece") if moments.breaking else ""
-            add(captions.on(picture, shot.time, note, shooting.rings(moment, shot)))
+            add(captions.on(picture, shot.time - moments.origin, note, shooting.rings(moment, shot)))
     return path
 
 
@@ -174,11 +174,11 @@ class _Shooting:
         self._origin = np.concatenate(moments.at(moments.times[0]).strands).mean(axis=0)
         self._parts: dict[tuple[int, ...], list[Ints]] = {}
         looked = [(moment.time, self._nodes(moment)) for moment in moments.spread()]
-        if moments.breaking or whole:
+        if moments.flat or whole:
             body = np.concatenate([x for _, strands in looked for x in strands])
         else:
             body = self._knots(looked[:: max(1, len(looked) // LOOKED_AT)], held)
-        right, toward = (ALONG, ACROSS) if moments.breaking else self._side(self._nodes(moments.at(held)))
+        right, toward = (ALONG, ACROSS) if moments.flat else self._side(self._nodes(moments.at(held)))
         self.view = _framed(body, size, right, toward)
 
     def _curves(self, nodes: Sequence[Floats]) -> list[SmoothCurve]:

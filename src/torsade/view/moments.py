@@ -60,6 +60,14 @@ class Moments:
     frames : first and last stored frame, counted from 0, from the last one if negative; without it all, or of
         a rod that breaks those from just before its first break on
 
+    Attributes
+    ----------
+    times : of the frames that are wanted [s], shape (n_frames,)
+    breaks : in the order in which they happened
+    breaking : whether this is a rod that breaks
+    flat : whether it is to be seen along z: a rod bent in its device, or a move, of crossings seen along z
+    radius : of the fibers [m]
+
     Raises
     ------
     TorsadeError
@@ -70,6 +78,7 @@ class Moments:
         self._dataset = dataset
         self.breaks = _breaks(dataset)
         self.breaking = "piece_start" in dataset
+        self.flat = self.breaking or "crossings" in dataset
         time, first, last = _checked(dataset, frames)
         if frames is None and self.breaks:
             begin = self.breaks[0].time - BEFORE * (time[last] - self.breaks[0].time)
@@ -86,6 +95,11 @@ class Moments:
     def closed(self) -> list[bool]:
         """Whether strands are closed; of pieces, none is."""
         return [] if self.breaking else [bool(c) for c in np.asarray(self._dataset["closed"])]
+
+    @property
+    def origin(self) -> float:
+        """When the time that is shown begins [s]: at the first break of a rod, at 0 of anything else."""
+        return self.breaks[0].time if self.breaks else 0.0
 
     @property
     def broken_at_first(self) -> bool:
