@@ -121,7 +121,7 @@ class Captions:
         edge = EDGE * width
         foot = height - edge - 3.0 * u
         large, small = {"fontsize": 3.2 * u, "color": INK}, {"fontsize": 2.1 * u, "color": INK}
-        end = edge + (8.0 + 2.85 * self._clock.digits) * u
+        end = edge + (8.6 + 2.85 * self._clock.digits) * u
         axes.text(edge, foot, r"$t\,=$", **large)
         axes.text(end, foot, self._clock.number(time), ha="right", **large)
         axes.text(end + 1.3 * u, foot, self._clock.name, **large)
