@@ -72,16 +72,18 @@ def test_a_table_is_printed_without_json(script: Any, capsys: pytest.CaptureFixt
 
 
 def test_an_absent_peer_is_skipped_in_one_sentence(script: Any, capsys: pytest.CaptureFixture[str]) -> None:
-    peer = script("peers.pyelastica_contact")
+    peer = script("peers.pyelastica")
     assert list(peer.main(["--quick"], installed=lambda: False)) == ["skipped"]
     assert capsys.readouterr().out.strip() == peer.ABSENT
 
 
-def test_the_coil_compared_with_the_peer_touches_itself(script: Any) -> None:
-    peer = script("peers.pyelastica_contact")
-    seconds, contacts = peer.ours(peer.coil(100), steps=3, repeats=1)
-    assert seconds > 0
-    assert contacts > 20
+def test_the_knot_compared_with_the_peer_touches_itself_at_rest(script: Any) -> None:
+    peer = script("peers.pyelastica")
+    motion = peer.ours(peer.trefoil(100))
+    way = peer.ours_to_rest(motion, peer.AT_REST)
+    assert len(motion.measure().contacts) > 5
+    assert 0 < way.arrival() < len(way.distance) - 1
+    assert abs(way.distance[-1] / way.distance[-3] - 1) < 1e-6
 
 
 def test_the_solvers_compared_agree(script: Any) -> None:
