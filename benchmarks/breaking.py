@@ -21,7 +21,7 @@ from torsade.protocols import SnapQuench, SnapTwist
 
 PAGE = Path(__file__).parents[1] / "docs" / "fracture.md"
 DEGREES = tuple(range(0, 360, 10))
-MESHES = (40, 50, 60, 70, 80, 100, 120, 200)
+MESHES = (40, 48, 50, 60, 70, 80, 100, 120, 200)
 NEAR_LAMBDA = (40, 48, 56, 50, 44, 52, 54)
 """Numbers of edges in the order of the shortest piece that exceeds 30 mm."""
 
@@ -188,10 +188,10 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     )  # fmt: skip
     found: dict[str, Any] = {
         "degrees": list(degrees),
-        "counts": {n: counts(n, degrees) for n in ((50,) if quick else MESHES)},
+        "counts": {n: counts(n, degrees) for n in ((48,) if quick else MESHES)},
         "near_lambda": {n: counts(n, degrees) for n in ((48,) if quick else NEAR_LAMBDA)},
         "rise_at": list(at),
-        "rise": {n: [rise(n, d) for d in at] for n in ((50,) if quick else (50, 100, 200, 400))},
+        "rise": {n: [rise(n, d) for d in at] for n in ((48,) if quick else (48, 100, 200, 400))},
         "disordered": {d: (disordered(d, 0.05, rods), disordered(d, 0.1, rods)) for d in twists},
         "quenched": {v: (quenched(v, "constant", rods), quenched(v, "quarter-power", rods)) for v in speeds},
     }

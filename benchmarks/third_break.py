@@ -119,7 +119,7 @@ class Rod:
         m.clock.steps[0] += 1
 
 
-def third(degrees: float, edges: int = 50, beta: float = 0.0, step: str = "1 us", **fields: Any) -> Third:
+def third(degrees: float, edges: int = 48, beta: float = 0.0, step: str = "1 us", **fields: Any) -> Third:
     """Stress over strength at the place of the third break; the second is made as the package makes it."""
     spec = SnapTwist(twist=f"{degrees} deg", edges=edges, step=step, **fields)
     rod, largest = Rod(spec, beta), Third(0.0, 0.0)
@@ -171,9 +171,9 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     given = options.parse_args(arguments)
     quick = given.quick
     meshes = {20: "2 us"} if quick else {50: "1 us", 100: "0.5 us"}
-    degrees = (120,) if quick else range(100, 160, 10)
+    degrees = (120,) if quick else range(80, 140, 10)
     found: dict[str, Any] = {
-        "twist": {d: third(d, *next((n, 0.0, s) for n, s in meshes.items())) for d in degrees},
+        "twist": {d: third(d, 20, step="2 us") if quick else third(d) for d in degrees},
         "inertia": {
             n: {name: third(120, n, beta, step, min_fragment="33 mm") for name, beta in inertias(n).items()}
             for n, step in meshes.items()

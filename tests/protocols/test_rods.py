@@ -45,7 +45,7 @@ def test_unfit_specifications_are_refused_in_a_sentence(protocol: type, fields: 
         (SnapTwist(twist="400 deg"), r"a twist of 400 deg breaks the straight rod, .* less than 361"),
         (SnapTwist(sigma_c="1 GPa"), r"would break at a curvature of 751.9 1/m, .* give a smaller sigma_c"),
         (SnapTwist(sigma_c="1 kPa"), r"breaks all but straight, .* give a larger sigma_c"),
-        (SnapTwist(step="10 us"), r"a step of 1e-05 s is not stable with edges of 4.8 mm"),
+        (SnapTwist(step="10 us"), r"a step of 1e-05 s is not stable with edges of 5 mm"),
         (SnapTwist(frames=5000), r"5000 frames in 0.002057 s are .* less than a step of 1e-06 s; give fewer"),
     ],
 )

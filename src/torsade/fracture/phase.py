@@ -3,7 +3,7 @@
 
 Every point is a rod as strong as breaks there: bent at a total twist until its largest curvature is the limit
 curvature, broken in the middle, its cascade followed. Rows of one twist are bent further from point to point,
-so that a shape takes some milliseconds; a cascade of 50 edges takes about fifteen.
+so that a shape takes some milliseconds; a cascade of 48 edges takes about fifteen.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Rods:
     material: Material
     section: Section
     length: float = 0.24
-    edges: int = 50
+    edges: int = 48
     min_fragment: float = 0.03
     criterion: CriterionName = "effective"
     frozen: bool = False

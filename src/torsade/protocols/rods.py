@@ -48,7 +48,7 @@ class Rod(Driven):
     twist_damping: Annotated[Rate, Field(ge=0)] | None = Field(
         None, description="Damping b of twist; by default the material's.", examples=["1.68e4 1/s"]
     )
-    edges: int = Field(50, ge=4, le=2000, description="Number of edges that the rod is made of.")
+    edges: int = Field(48, ge=4, le=2000, description="Number of edges that the rod is made of.")
     step: Annotated[Time, Positive] | None = Field(
         None,
         description="Time step; by default 1 us, or half the longest stable one where that is less.",
