@@ -10,6 +10,7 @@ import json
 import os
 import shutil
 import socket
+import stat
 import tempfile
 import time
 import uuid
@@ -30,6 +31,9 @@ __all__ = [
     "writing",
 ]
 
+LARGEST_DESCRIPTION = 32 * 2**20
+"""Largest zarr.json that is read [bytes]."""
+
 BUSY = (
     "{out} is being written by {owner}; wait for it or give another name, or remove {lock} when no such run "
     "goes on"
@@ -48,9 +52,13 @@ def private(path: Path, ending: str) -> Path:
 
 def attributes(path: Path) -> dict[str, Any] | None:
     """Attributes of a result on disk, complete or not; None when the path is nothing of ours."""
+    described = path / "zarr.json"
     try:
-        found = json.loads((path / "zarr.json").read_text(encoding="utf-8"))["attributes"]
-    except (OSError, ValueError, KeyError, TypeError):
+        about = described.stat()
+        if not stat.S_ISREG(about.st_mode) or about.st_size > LARGEST_DESCRIPTION:
+            return None  # a pipe may never end
+        found = json.loads(described.read_text(encoding="utf-8"))["attributes"]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
     ours = isinstance(found, dict) and "protocol" in found and "versions" in found
     return found if ours else None

@@ -3,34 +3,32 @@
 from __future__ import annotations
 
 import json
-import platform
 import shutil
 import time
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
-from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from torsade import __version__, places, store
+from torsade import places, provenance, store, vetting
 from torsade.arrays import Floats
 from torsade.errors import TorsadeError, counted, quoted
 from torsade.results import Result
-from torsade.variables import SAMPLE, SINGLE_PRECISION, VARIABLES
+from torsade.variables import FORMAT, SAMPLE, SINGLE_PRECISION, VARIABLES
 
-__all__ = ["SAME_VERSIONS", "Recording", "versions"]
+if TYPE_CHECKING:
+    from torsade.motion.moving import Motion
+
+__all__ = ["Recording"]
 
 FLUSH_EVERY = 0.5
 """Least time between writes to disk [s]: frames that come faster are written together."""
 
 PROGRESS = ("done", "sampled", "wall", "steps")
 """What the restart file holds besides what the motion saves."""
-
-SAME_VERSIONS = ("torsade", "numba", "numpy")
-"""A run goes on with these in the versions that it was begun with: others may round otherwise."""
 
 Frame = Mapping[str, "float | Floats"]
 
@@ -64,7 +62,8 @@ class Recording:
             for name in names
         }
         self._fixed = dict(fixed)
-        self.attrs = attrs | {"created": _now(), "versions": versions(), "status": "running"}
+        begun = {"format": FORMAT, "created": _now(), **provenance.present(), "resumed": []}
+        self.attrs = attrs | begun | {"status": "running"}
         self.done = self.sampled = 0
         self.saved: dict[str, NDArray[Any]] | None = None
         self._restart: tuple[str, ...] = ()
@@ -123,7 +122,7 @@ class Recording:
         found = places.attributes(part) or {}
         done = int(found.get("done", 0))
         if done and resume:
-            self._go_on(part, found)
+            self._go_on(part)
             return
         if done and not overwrite:
             raise TorsadeError(
@@ -143,11 +142,13 @@ class Recording:
         self._out, self.complete = out, True
         return True
 
-    def _go_on(self, part: Path, found: Mapping[str, Any]) -> None:
+    def _go_on(self, part: Path) -> None:
         """Take over the frames and the state of an interrupted run."""
+        found, _ = vetting.vetted(part)
         _same_run(self.attrs, found, part)
-        _same_versions(self.attrs, found, part)
-        self.attrs["created"] = found["created"]
+        provenance.check_same(found, part)
+        for name in ("created", "versions", "machine", "resumed"):
+            self.attrs[name] = found[name]
         self.part = part
         if found["status"] == "complete":  # only its name is missing
             assert self._out is not None
@@ -159,7 +160,10 @@ class Recording:
             self.wall = float(saved["wall"])
             self._steps = int(saved["steps"])
             self.saved = {name: saved[name] for name in self._restart}
-            store.set_attributes(part, self._progress())
+            self._check_counts(part)
+            again = {"at": _now(), "done": self.done, **provenance.present()}
+            self.attrs["resumed"] = [*found["resumed"], again]
+            store.set_attributes(part, self._progress() | {"resumed": self.attrs["resumed"]})
             self._read(part)
         elif int(found["done"]) == len(self._arrays["time"]):  # only the end is missing
             self.done, self.sampled = self._written = int(found["done"]), int(found["sampled"])
@@ -170,6 +174,21 @@ class Recording:
                 f"{str(part)!r} holds {counted(found['done'], 'frame')}, but no state to go on from; open it "
                 "for the frames, or give --overwrite (overwrite=True) in place of resume to begin anew"
             )
+
+    def _check_counts(self, part: Path) -> None:
+        """Refuse a restart file that counts frames which there cannot be."""
+        with store.sound_restart(part):
+            most = len(self._arrays["time"])
+            samples = max((len(a) for name, a in self._arrays.items() if name.startswith(SAMPLE)), default=0)
+            if not (0 < self.done <= most and 0 <= self.sampled <= samples):
+                raise ValueError
+
+    def recover(self, motion: Motion) -> None:
+        """Bring a motion, as it is at t = 0, to where the frames that were taken over end."""
+        assert self.saved is not None
+        assert self.part is not None
+        with store.sound_restart(self.part):
+            motion.recover(self.saved)
 
     def _read(self, part: Path) -> None:
         before = Result.open(part).dataset
@@ -304,7 +323,10 @@ class Recording:
             cut = values if sizes is None else values[: sizes[dims[0]]]
             variables[name] = (dims, cut, {"units": unit, "long_name": meaning})
         time_axis = {"time": variables.pop("time")}
-        return xarray.Dataset(variables | self._fixed, coords=time_axis, attrs=dict(self.attrs))
+        for name, (dim, values) in self._fixed.items():
+            _, unit, meaning = VARIABLES[name]
+            variables[name] = ((dim,), values, {"units": unit, "long_name": meaning})
+        return xarray.Dataset(variables, coords=time_axis, attrs=dict(self.attrs))
 
 
 def _same_run(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) -> None:
@@ -331,27 +353,9 @@ def _same_run(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) ->
         )
 
 
-def _same_versions(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) -> None:
-    """Refuse to mix what different versions compute."""
-    for name in SAME_VERSIONS:
-        now, then = asked["versions"][name], found["versions"].get(name)
-        if now != then:
-            raise TorsadeError(
-                f"{str(path)!r} was begun with {name} {then}, and this is {name} {now}, which may round "
-                "otherwise; go on with the earlier version, or give --overwrite (overwrite=True) in place of "
-                "resume to begin anew"
-            )
-
-
 def _brief(value: object) -> str:
     return quoted(value, 200)
 
 
 def _now() -> str:
     return datetime.now(UTC).isoformat(timespec="microseconds")
-
-
-def versions() -> dict[str, str]:
-    """Of what results are computed with."""
-    packages = {name: version(name) for name in ("numpy", "numba", "zarr")}
-    return {"torsade": __version__, "python": platform.python_version()} | packages

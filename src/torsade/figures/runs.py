@@ -14,7 +14,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from torsade import places
+from torsade import places, stopping
 from torsade.errors import TorsadeError, counted, reason_of
 from torsade.figures import stored
 from torsade.results import Result
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["make_folder", "results", "run_path"]
 
-DRAWING = ("view", "figures", "cli")
+DRAWING = ("view", "figures", "export", "cli")
 """Parts of the package that no number depends on."""
 
 BUSY = "another command is making runs in {out} ({owner}); wait for it or give another --out"
@@ -197,6 +197,11 @@ def _outcomes(
         try:
             for future in as_completed(waiting):
                 yield future.result()
+        except KeyboardInterrupt:
+            if stopping.by_sigterm():  # unlike Ctrl-C, it may have come to this process alone
+                for worker in multiprocessing.active_children():
+                    worker.terminate()
+            raise
         finally:
             pool.shutdown(cancel_futures=True)
 
