@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade.errors import TorsadeError
+from torsade.store import quiet_zarr
 from torsade.vetting import Stored, check_files, vetted
 
 if TYPE_CHECKING:
@@ -45,7 +46,7 @@ def read(path: Path, at_once: int, in_all: int) -> tuple[xarray.Dataset, bool]:
     for name, about in described.items():
         if name not in late:
             check_files(path, name, about, counts.get(name))
-    with _sound(path):
+    with _sound(path), quiet_zarr():
         opened = xarray.open_dataset(
             path, engine="zarr", chunks=None, consolidated=False, decode_times=False, decode_timedelta=False
         )
@@ -55,9 +56,8 @@ def read(path: Path, at_once: int, in_all: int) -> tuple[xarray.Dataset, bool]:
         }
         dataset = xarray.Dataset(whole, attrs=attrs).set_coords(list(opened.coords))
         dataset = dataset.isel({dim: slice(0, n) for dim, n in upto.items() if dim in dataset.dims})
-        for name, variable in dataset.variables.items():
-            if name not in late:
-                variable.load()
+        for at_hand in set(dataset.variables) - late:
+            dataset.variables[at_hand].load()
     return dataset, bool(late)
 
 
@@ -118,5 +118,7 @@ def _late(
             with _sound(path, name):
                 return np.asarray(variable[key].values)
 
-    kept = indexing.MemoryCachedArray(indexing.LazilyIndexedArray(Late()))
+    kept = indexing.MemoryCachedArray(  # type: ignore[no-untyped-call]
+        indexing.LazilyIndexedArray(Late())
+    )
     return xarray.Variable(variable.dims, kept, variable.attrs)

@@ -35,6 +35,7 @@ __all__ = [
     "complete",
     "create",
     "has_restart",
+    "quiet_zarr",
     "read_restart",
     "save",
     "set_attributes",
@@ -68,7 +69,7 @@ def create(dataset: xarray.Dataset, path: Path) -> None:
             frame = max(1, variable.dtype.itemsize * int(np.prod(variable.shape[1:])))
             rows = max(1, min(variable.shape[0], -(-CHUNK_BYTES // frame)))
             encoding[str(name)]["chunks"] = (rows, *variable.shape[1:])
-    with writing(path), _quiet_zarr():
+    with writing(path), quiet_zarr():
         try:
             dataset.drop_encoding().to_zarr(
                 path, mode="w-", zarr_format=3, consolidated=True, encoding=encoding
@@ -92,7 +93,7 @@ def append(path: Path, arrays: Arrays, first: int, last: int) -> None:
     """Write frames first to last (not included) of arrays (n_frames, ...) that hold all frames so far."""
     import zarr
 
-    with writing(path), _quiet_zarr():
+    with writing(path), quiet_zarr():
         group = zarr.open_group(path, mode="r+")
         for name, values in arrays.items():
             array = group[name]
@@ -107,7 +108,7 @@ def set_attributes(path: Path, changed: Mapping[str, Any]) -> None:
     """Change attributes of a result on disk."""
     import zarr
 
-    with writing(path), _quiet_zarr():
+    with writing(path), quiet_zarr():
         zarr.open_group(path, mode="r+").attrs.update(dict(changed))
 
 
@@ -190,7 +191,7 @@ def _seal(path: Path, changed: Mapping[str, Any]) -> None:
     """Give a result its last attributes, with the number of its files, and gather what describes it."""
     import zarr
 
-    with writing(path), _quiet_zarr():
+    with writing(path), quiet_zarr():
         attributes = zarr.open_group(path, mode="r+").attrs
         attributes.update(dict(changed) | {"chunks": chunk_files(path)})
         zarr.consolidate_metadata(str(path))
@@ -203,7 +204,7 @@ def complete(part: Path, out: Path, sizes: Mapping[str, int], changed: Mapping[s
     """
     import zarr
 
-    with writing(part), _quiet_zarr():
+    with writing(part), quiet_zarr():
         group = zarr.open_group(part, mode="r+")
         for _, array in group.arrays():
             names = array.metadata.dimension_names  # type: ignore[union-attr]
@@ -216,7 +217,7 @@ def complete(part: Path, out: Path, sizes: Mapping[str, int], changed: Mapping[s
 
 
 @contextmanager
-def _quiet_zarr() -> Iterator[None]:
+def quiet_zarr() -> Iterator[None]:
     """Leave out that consolidated metadata is not in the standard yet; readers that lack it do without."""
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Consolidated metadata is currently not part")

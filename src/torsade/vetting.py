@@ -160,7 +160,7 @@ def _check_attributes(found: Mapping[str, Any]) -> None:
         value = found.get(name)
         if name in found and (not isinstance(value, kinds) or isinstance(value, bool)):
             raise _UnfitError(f"its attribute {name!r} is {quoted(value)}")
-        if kinds == (int,) and name in found and value < 0:
+        if isinstance(value, int) and value < 0:
             raise _UnfitError(f"its attribute {name!r} is {quoted(value)}")
     for name in ("spec", "model"):
         try:
