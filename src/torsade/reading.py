@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from torsade.errors import TorsadeError
 from torsade.store import quiet_zarr
+from torsade.variables import VARIABLES
 from torsade.vetting import Stored, check_files, vetted
 
 if TYPE_CHECKING:
@@ -50,9 +51,12 @@ def read(path: Path, at_once: int, in_all: int) -> tuple[xarray.Dataset, bool]:
         opened = xarray.open_dataset(
             path, engine="zarr", chunks=None, consolidated=False, decode_times=False, decode_timedelta=False
         )
+        order = [name for name in VARIABLES if name in described]
         whole = {
-            name: _late(path, str(name), described[str(name)], counts, variable) if name in late else variable
-            for name, variable in opened.variables.items()
+            name: _late(path, name, described[name], counts, opened.variables[name])
+            if name in late
+            else opened.variables[name]
+            for name in dict.fromkeys([*order, *described])
         }
         dataset = xarray.Dataset(whole, attrs=attrs).set_coords(list(opened.coords))
         dataset = dataset.isel({dim: slice(0, n) for dim, n in upto.items() if dim in dataset.dims})

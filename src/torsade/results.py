@@ -165,17 +165,17 @@ class Result:
     def export(
         self,
         to: str,
-        path: str | Path | None = None,
+        path: str | Path,
         frames: str | int | slice | None = None,
         *,
         overwrite: bool = False,
     ) -> list[Path]:
-        """Write the result for other programs; see `torsade.export.export`."""
-        return list(_door("torsade.export").export(self, to, path, frames, overwrite=overwrite))
+        """Write the result for other programs: vtk, gltf, csv or npz; see `torsade.export.export`."""
+        return list(_above("torsade.export").export(self, to, path, frames, overwrite=overwrite))
 
     def show(self, picture: str | Path | None = None, frame: int | None = None) -> None:
-        """Show it in a window, or draw a frame to a picture; see `torsade.view.show`."""
-        _door("torsade.view").show(self, picture, frame)
+        """Show all frames in a window, or draw one to a picture; see `torsade.view.show`."""
+        _above("torsade.view").show(self, picture, frame)
 
     def _number(self, name: str) -> float | None:
         value = self._dataset.attrs.get(name)
@@ -188,7 +188,7 @@ class Result:
         return f"<Result of {attrs['protocol']}{what}: {self.frames} frames to t = {last:.4g} s>"
 
 
-def _door(module: str) -> Any:
+def _above(module: str) -> Any:
     """A module that stands above results, imported when something is asked of it that needs more."""
     return import_module(module)
 

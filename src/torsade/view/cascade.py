@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from torsade.errors import TorsadeError
 from torsade.fracture.criteria import matching_strength
 from torsade.view._extra import require
-from torsade.view.colours import STRAND_COLOURS
+from torsade.view.colours import DISTINCT, STRAND_COLOURS
 from torsade.view.plots import INK, SLIP, STYLE, save
+from torsade.view.strands import strands_at
 
 if TYPE_CHECKING:
     import xarray
@@ -30,18 +31,14 @@ BEFORE = 0.15
 MOMENTS = 4
 """Moments that a picture shows."""
 
-DISTINCT = 5
-"""Colours after which pieces begin anew: the others are too pale."""
-
 THICKER = 3.0
 """How much thicker than to scale the rod is drawn, as in the thesis."""
 
 
 def pieces_at(dataset: xarray.Dataset, frame: int) -> list[Floats]:
     """Nodes (n, 3) [m] of every piece at a recorded frame, from end 0 of the rod to end 1."""
-    start = np.unique(np.asarray(dataset["piece_start"].isel(time=frame), dtype=np.int64))
-    position = np.asarray(dataset["position"].isel(time=frame), dtype=np.float64)
-    return np.split(position[: start[-1]], start[1:-1])
+    _require(dataset, "position")
+    return [piece.x for piece in strands_at(dataset, frame)]
 
 
 def along_rod(dataset: xarray.Dataset, name: str) -> tuple[Floats, Floats]:
