@@ -30,16 +30,9 @@ def looks(protocol: str) -> list[float]:
 
 
 @pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], ts.Result]:
+def whole(stored: Callable[[str], Path]) -> Callable[[str], ts.Result]:
     """The run of a protocol that nothing stopped, as it is on disk."""
-
-    @lru_cache
-    def stored(protocol: str) -> ts.Result:
-        path = tmp_path_factory.mktemp("whole") / f"{protocol}.zarr"
-        SHORT[protocol].run(out=path)
-        return ts.open(path)
-
-    return stored
+    return lambda protocol: ts.open(stored(protocol))
 
 
 def stopping(share: float, stop: Callable[[], object]) -> Callable[[float, str], None]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from torsade.errors import TorsadeError
 from torsade.view._extra import require
+from torsade.view.camera import best_side
 from torsade.view.cascade import draw_pieces
 from torsade.view.scene import render_result
 from torsade.view.strands import frame_index, strands_at, tubes_at
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 __all__ = ["Window", "draw_result", "has_display", "show"]
 
 INK = "#333333"
+
+CLOSER = 1.3
+"""How much nearer the camera comes than to see a sphere around the fibers, which fill it in one direction."""
 
 
 def show(result: Result, picture: str | Path | None = None, frame: int | None = None) -> None:
@@ -53,8 +57,8 @@ def show(result: Result, picture: str | Path | None = None, frame: int | None = 
 
 def draw_result(result: Result, path: str | Path, frame: int | None = None) -> Path:
     """Draw a frame to a PNG file; of a rod that breaks, without a frame, some moments."""
-    if frame is None and "piece_start" in result.dataset:
-        return draw_pieces(result.dataset, path)
+    if "piece_start" in result.dataset:
+        return draw_pieces(result.dataset, path, frame)
     return render_result(result.dataset, path, frame=result.last_held if frame is None else frame)
 
 
@@ -95,12 +99,13 @@ class Window:
                 pointb=(0.7, 0.07),
                 fmt="%.0f",
                 color=INK,
-                style="modern",
+                tube_width=0.004,
+                slider_width=0.02,
+                title_height=0.02,
             )
             for key, step in (("Left", -1), ("Right", 1)):
                 self.plotter.add_key_event(key, lambda step=step: self.go_to(self.frame + step))
-        self.plotter.view_isometric()
-        self.plotter.reset_camera(bounds=self._bounds())
+        self._look()
 
     def go_to(self, frame: int) -> None:
         """Show another frame; beyond the first and the last there is none."""
@@ -119,12 +124,14 @@ class Window:
 
     def _draw(self, frame: int) -> None:
         t = float(self._dataset["time"][frame])
-        note = f"frame {frame} of {self._frames - 1}, t = {t:.4g} s"
+        note = f"frame {frame} of {self._frames - 1}, t = {t:.4g} s" if self._frames > 1 else ""
         mesh = self._surface(frame)
         self.plotter.add_mesh(
             mesh, scalars="colour", rgb=True, name="fibers", smooth_shading=True, reset_camera=False
         )
-        self.plotter.add_text(note, position="upper_left", font_size=11, color=INK, name="note")
+        self.plotter.add_text(
+            note, position=(0.02, 0.95), viewport=True, font_size=11, color=INK, name="note"
+        )
 
     def _surface(self, frame: int) -> Any:
         """All tubes of a frame in one mesh with the colours of its points."""
@@ -141,6 +148,17 @@ class Window:
         surface.point_data.active_normals_name = "Normals"
         return surface
 
-    def _bounds(self) -> tuple[float, ...]:
-        x = np.concatenate([s.x for s in strands_at(self._dataset, self.frame)])
-        return tuple(np.stack([x.min(axis=0), x.max(axis=0)], axis=1).ravel().tolist())
+    def _look(self) -> None:
+        """From the side that shows most, as in pictures, with everything in the window."""
+        radius = float(self._dataset.attrs["radius"])
+        curves = [s.x / radius for s in strands_at(self._dataset, self.frame)]
+        x = np.concatenate(curves)
+        right, toward = np.eye(3)[[0, 2]]  # across the plane in which rods break
+        if "piece_start" not in self._dataset:
+            right, toward = best_side(curves, x, 1.0, level=True)
+        camera, focus = self.plotter.camera, 0.5 * radius * (x.min(axis=0) + x.max(axis=0))
+        camera.focal_point, camera.position = focus, focus + radius * np.ptp(x) * toward
+        camera.up = np.cross(toward, right)
+        bounds = np.stack([x.min(axis=0) - 1, x.max(axis=0) + 1], axis=1) * radius
+        self.plotter.reset_camera(bounds=tuple(bounds.ravel().tolist()))
+        camera.zoom(CLOSER)
