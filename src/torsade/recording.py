@@ -30,6 +30,9 @@ FLUSH_EVERY = 0.5
 PROGRESS = ("done", "sampled", "wall", "steps")
 """What the restart file holds besides what the motion saves."""
 
+NEEDED = ("created", "done", "machine", "resumed", "spec", "status", "steps", "sampled", "wall_s")
+"""Attributes without which a run cannot be gone on with."""
+
 Frame = Mapping[str, "float | Floats"]
 
 
@@ -120,7 +123,7 @@ class Recording:
     def _start(self, part: Path, resume: bool, overwrite: bool) -> None:
         """Take over the growing folder that is there, or make one under a name of its own."""
         found = places.attributes(part) or {}
-        done = int(found.get("done", 0))
+        done = found.get("done", 0)
         if done and resume:
             self._go_on(part)
             return
@@ -138,6 +141,7 @@ class Recording:
         found = places.attributes(out)
         if found is None or found.get("status") != "complete" or places.part_of(out).exists():
             return False
+        found, _ = vetting.vetted(out)
         _same_run(self.attrs, found, out)
         self._out, self.complete = out, True
         return True
@@ -145,6 +149,9 @@ class Recording:
     def _go_on(self, part: Path) -> None:
         """Take over the frames and the state of an interrupted run."""
         found, _ = vetting.vetted(part)
+        missing = [name for name in NEEDED if name not in found]
+        if missing:
+            raise TorsadeError(f"{str(part)!r} does not say {missing[0]!r}; give --overwrite to begin anew")
         _same_run(self.attrs, found, part)
         provenance.check_same(found, part)
         for name in ("created", "versions", "machine", "resumed"):
@@ -155,12 +162,7 @@ class Recording:
             store.complete(part, self._out, {}, {})
             self.complete = True
         elif store.has_restart(part):
-            saved = store.read_restart(part, (*self._restart, *PROGRESS))
-            self.done, self.sampled = self._written = int(saved["done"]), int(saved["sampled"])
-            self.wall = float(saved["wall"])
-            self._steps = int(saved["steps"])
-            self.saved = {name: saved[name] for name in self._restart}
-            self._check_counts(part)
+            self._take_over(part)
             again = {"at": _now(), "done": self.done, **provenance.present()}
             self.attrs["resumed"] = [*found["resumed"], again]
             store.set_attributes(part, self._progress() | {"resumed": self.attrs["resumed"]})
@@ -175,13 +177,16 @@ class Recording:
                 "for the frames, or give --overwrite (overwrite=True) in place of resume to begin anew"
             )
 
-    def _check_counts(self, part: Path) -> None:
-        """Refuse a restart file that counts frames which there cannot be."""
+    def _take_over(self, part: Path) -> None:
+        """Read the restart file, and refuse one that counts frames which there cannot be."""
+        saved = store.read_restart(part, (*self._restart, *PROGRESS))
         with store.sound_restart(part):
-            most = len(self._arrays["time"])
+            self.done, self.sampled = self._written = int(saved["done"]), int(saved["sampled"])
+            self.wall, self._steps = float(saved["wall"]), int(saved["steps"])
             samples = max((len(a) for name, a in self._arrays.items() if name.startswith(SAMPLE)), default=0)
-            if not (0 < self.done <= most and 0 <= self.sampled <= samples):
+            if not (0 < self.done <= len(self._arrays["time"]) and 0 <= self.sampled <= samples):
                 raise ValueError
+        self.saved = {name: saved[name] for name in self._restart}
 
     def recover(self, motion: Motion) -> None:
         """Bring a motion, as it is at t = 0, to where the frames that were taken over end."""

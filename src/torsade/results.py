@@ -18,6 +18,7 @@ meant), `knot` where there is one, `radius` [m], `seed` where chance has a part,
 from __future__ import annotations
 
 import json
+import os
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -69,8 +70,7 @@ class Result:
                 raise TorsadeError(
                     f"{str(path)!r} is not complete; open {str(part)!r} for what is done of it"
                 )
-            what = "is not a result of torsade" if path.exists() else "does not exist"
-            raise TorsadeError(f"{str(path)!r} {what}; give a folder NAME.zarr written by a run")
+            raise TorsadeError(f"{str(path)!r} {_what_else(path)}; give a folder NAME.zarr written by a run")
         dataset, late = reading.read(path, READ_AT_ONCE, READ_IN_ALL)
         result = cls(dataset)
         result._behind = path if late else None
@@ -186,6 +186,17 @@ class Result:
         last = float(self._dataset["time"][-1]) if self.frames else 0.0
         what = f" on {attrs['knot']}" if "knot" in attrs else ""
         return f"<Result of {attrs['protocol']}{what}: {self.frames} frames to t = {last:.4g} s>"
+
+
+def _what_else(path: Path) -> str:
+    """What a path is that is no result."""
+    try:
+        (path / "zarr.json").stat()
+    except PermissionError:
+        return "may not be read (permission denied)"
+    except (OSError, ValueError):
+        return "is not a result of torsade" if os.path.lexists(path) else "does not exist"
+    return "is not a result of torsade" if os.access(path / "zarr.json", os.R_OK) else "may not be read"
 
 
 def _above(module: str) -> Any:

@@ -322,9 +322,7 @@ def test_files_are_replaced_only_when_asked(to: str, tmp_path: Path) -> None:
     path = tmp_path / f"a{FORMATS[to]}"
     ring().export(to, path)
     before = {p: p.read_bytes() for p in tmp_path.rglob("*") if p.is_file()}
-    with pytest.raises(
-        ts.TorsadeError, match="exists already; give another --out, or --overwrite to replace"
-    ):
+    with pytest.raises(ts.TorsadeError, match="exists already; give another name, or --overwrite"):
         ring().export(to, path)
     ring().export(to, path, overwrite=True)
     assert {p for p in tmp_path.rglob("*") if p.is_file()} == set(before)
@@ -336,7 +334,7 @@ def test_what_lies_beside_is_not_replaced_either(tmp_path: Path) -> None:
         ring().export("csv", tmp_path / "a.csv")
     (tmp_path / "a-frames").mkdir()
     (tmp_path / "a-frames" / "thesis.tex").write_text("years of work")
-    with pytest.raises(ts.TorsadeError, match="holds other things than frames; give another --out"):
+    with pytest.raises(ts.TorsadeError, match="holds other things than frames; give another name"):
         ring().export("vtk", tmp_path / "a.pvd", overwrite=True)
     assert sorted(p.name for p in tmp_path.rglob("*")) == ["a-frames", "a-nodes.csv", "thesis.tex"]
 

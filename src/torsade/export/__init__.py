@@ -62,7 +62,9 @@ def export(
     if out.suffix.lower() != ending or not out.stem:
         raise TorsadeError(f"cannot export {to} to {str(path)!r}; give a name that ends in {ending}")
     if os.path.lexists(out) and not overwrite:
-        raise TorsadeError(f"{str(path)!r} exists already; give another --out, or --overwrite to replace it")
+        raise TorsadeError(
+            f"{str(path)!r} exists already; give another name, or --overwrite (overwrite=True) to replace it"
+        )
     with writing(out):
         if out.is_dir():
             raise IsADirectoryError(21, "is a directory")

@@ -48,7 +48,8 @@ def written(dataset: xarray.Dataset, path: Path, frames: range, overwrite: bool)
     for file in tables:
         if file.exists() and not overwrite:
             raise TorsadeError(
-                f"{str(file)!r} exists already; give another --out, or --overwrite to replace it"
+                f"{str(file)!r} exists already; give another name, or --overwrite "
+                "(overwrite=True) to replace it"
             )
     for file, columns in tables.items():
         replace_file(file, _table(columns))

@@ -57,10 +57,11 @@ def check_folder(folder: Path, overwrite: bool) -> None:
         return
     ours = folder.is_dir() and all(p.suffix == ".vtp" and p.is_file() for p in folder.iterdir())
     if not ours:
-        raise TorsadeError(f"{str(folder)!r} exists and holds other things than frames; give another --out")
+        raise TorsadeError(f"{str(folder)!r} exists and holds other things than frames; give another name")
     if not overwrite:
         raise TorsadeError(
-            f"{str(folder)!r} exists already; give another --out, or --overwrite to replace it"
+            f"{str(folder)!r} exists already; give another name, or --overwrite "
+            "(overwrite=True) to replace it"
         )
 
 
