@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
@@ -134,6 +135,7 @@ def check_files(path: Path, name: str, about: Stored, count: object = None) -> N
     """
     with _told(path):
         root, number = path.resolve(), 0
+        _check_folders(path / name, root)
         for file in chunks_of(path / name):
             _check_regular(file, root, 2 * about.chunk_bytes + 2**16)
             if about.packing is not None and _unpacked(file, about.packing) != about.chunk_bytes:
@@ -188,6 +190,7 @@ def _described(path: Path) -> dict[str, dict[str, Any]]:
 
 
 def _description(file: Path, path: Path) -> dict[str, Any]:
+    _check_inside(file.parent, path.resolve())
     _check_regular(file, path.resolve(), LARGEST_DESCRIPTION)
     try:
         about = json.loads(file.read_text(encoding="utf-8"))
@@ -200,13 +203,28 @@ def _description(file: Path, path: Path) -> dict[str, Any]:
 
 def _check_regular(file: Path, root: Path, most: int) -> None:
     """Refuse what is no file, leads out of the folder, or is too large."""
-    about = file.stat()
+    about = file.lstat()
+    if stat.S_ISLNK(about.st_mode):
+        _check_inside(file, root)
+        about = file.stat()
     if not stat.S_ISREG(about.st_mode):
         raise _UnfitError(f"{file.name!r} in {file.parent.name!r} is a folder, a pipe or a device")
-    if not file.resolve().is_relative_to(root):
-        raise _UnfitError(f"{file.name!r} in {file.parent.name!r} leads out of the folder")
     if about.st_size > most:
         raise _UnfitError(f"{file.name!r} in {file.parent.name!r} has {about.st_size / 2**20:.0f} MB")
+
+
+def _check_inside(path: Path, root: Path) -> None:
+    if not path.resolve().is_relative_to(root):
+        raise _UnfitError(f"{path.name!r} in {path.parent.name!r} leads out of the folder")
+
+
+def _check_folders(array: Path, root: Path) -> None:
+    """Refuse folders of a variable that lead elsewhere, where its files would not be looked at."""
+    _check_inside(array / "c", root)
+    for folder, names, _ in os.walk(array / "c"):
+        for name in names:
+            if Path(folder, name).is_symlink():
+                raise _UnfitError(f"{name!r} in {Path(folder).name!r} leads elsewhere")
 
 
 def _variable(name: str, about: Mapping[str, Any]) -> Stored:

@@ -75,6 +75,13 @@ def linked_variable(path: Path) -> None:
     (path / "separation").symlink_to(path.parent / "elsewhere", target_is_directory=True)
 
 
+def linked_folder(path: Path) -> None:
+    """Of the chunks of one frame."""
+    folder = a_chunk(path, "position").parent
+    folder.rename(path.parent / "elsewhere")
+    folder.symlink_to(path.parent / "elsewhere", target_is_directory=True)
+
+
 def pipe(path: Path) -> None:
     chunk = a_chunk(path, "separation")
     chunk.unlink()
@@ -139,6 +146,7 @@ CASES: dict[str, tuple[Change, str]] = {
     "a bomb": (bomb, "does not unpack to what belongs there"),
     "a bomb of zstd": (zstd_bomb, "does not unpack to what belongs there"),
     "a link out": (linked_chunk, "leads out of the folder"),
+    "a folder of chunks that is a link": (linked_folder, "leads elsewhere"),
     "a folder that is a link": (linked_variable, "leads out of the folder"),
     "names with ..": (listed_elsewhere, "its list of variables is not that of its folders"),
     "names of chunks": (
@@ -228,6 +236,14 @@ def test_what_is_read_later_is_the_same(copy: Path, monkeypatch: pytest.MonkeyPa
         np.testing.assert_array_equal(
             late["position"][[1, 4], 3:9, ::-1], sound["position"][[1, 4], 3:9, ::-1]
         )
+
+
+def test_what_is_read_later_is_saved_too(copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    sound = ts.open(copy).dataset
+    monkeypatch.setattr(results, "READ_AT_ONCE", 1000)
+    for path in (copy.with_name("b.zarr"), copy):  # even onto itself
+        ts.open(copy).save(path, overwrite=True)
+        assert ts.open(path).dataset.identical(sound)
 
 
 def test_every_bit_that_is_flipped_is_noticed(copy: Path) -> None:
