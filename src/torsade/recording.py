@@ -167,9 +167,9 @@ class Recording:
             self.attrs["resumed"] = [*found["resumed"], again]
             store.set_attributes(part, self._progress() | {"resumed": self.attrs["resumed"]})
             self._read(part)
-        elif int(found["done"]) == len(self._arrays["time"]):  # only the end is missing
-            self.done, self.sampled = self._written = int(found["done"]), int(found["sampled"])
-            self._steps, self.wall = int(found["steps"]), float(found["wall_s"])
+        elif found["done"] == len(self._arrays["time"]):  # only the end is missing
+            self.done, self.sampled = self._written = found["done"], found["sampled"]
+            self._steps, self.wall = found["steps"], float(found["wall_s"])
             self._read(part)
         else:
             raise TorsadeError(
@@ -198,7 +198,13 @@ class Recording:
     def _read(self, part: Path) -> None:
         before = Result.open(part).dataset
         for name, values in self._arrays.items():
-            values[: self._count(name)] = before[name].values
+            taken = values[: self._count(name)]
+            if name not in before or before[name].shape != taken.shape:
+                raise TorsadeError(
+                    f"{str(part)!r} does not hold {name!r} as this run records it; it is damaged: give "
+                    "--overwrite (overwrite=True) in place of resume to begin anew"
+                )
+            taken[:] = before[name].values
 
     def add(self, frame: Frame) -> None:
         """Record a frame."""

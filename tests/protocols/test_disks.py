@@ -182,3 +182,39 @@ def test_a_state_that_is_none_is_refused(protocol: str, case: str, tmp_path: Pat
         SHORT[protocol].run(out=tmp_path / "run.zarr", resume=True)
     assert "\n" not in str(refused.value)
     assert ts.open(part).frames == done
+
+
+@pytest.mark.parametrize("case", ["lost", "shorter", "unsaid", "counted"])
+def test_a_growing_run_that_is_spoilt_is_not_gone_on_with(case: str, tmp_path: Path) -> None:
+    import json
+    import shutil
+
+    from torsade.protocols.driving import Interrupted
+
+    def stop(share: float, note: str) -> None:
+        if share > 0.5:
+            raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted):
+        SHORT["tighten"].run(stop, tmp_path / "run.zarr")
+    part = tmp_path / "run.zarr.part"
+    about = json.loads((part / "zarr.json").read_text())
+    if case == "lost":
+        shutil.rmtree(part / "length")
+        about["consolidated_metadata"] = None
+    elif case == "shorter":
+        described = json.loads((part / "position" / "zarr.json").read_text())
+        described["shape"][1] -= 1
+        (part / "position" / "zarr.json").write_text(json.dumps(described))
+    elif case == "unsaid":
+        del about["attributes"]["resumed"]
+    else:
+        about["attributes"]["done"] = "many"
+    (part / "zarr.json").write_text(json.dumps(about))
+    with pytest.raises(ts.TorsadeError) as refused:
+        SHORT["tighten"].run(out=tmp_path / "run.zarr", resume=True)
+    assert "run.zarr.part" in str(refused.value)
+    assert "\n" not in str(refused.value)
+    with pytest.raises(ts.TorsadeError, match="of an interrupted run; add --resume"):
+        SHORT["tighten"].run(out=tmp_path / "run.zarr")
+    assert SHORT["tighten"].run(out=tmp_path / "run.zarr", overwrite=True).complete

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json as json_format
 import math
 import re
+import stat
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -94,7 +96,7 @@ def _found(given: str) -> Path:
 def _about(path: Path, result: Result) -> dict[str, Any]:
     """All that is known of a result, under the keys of `--json`."""
     data, attrs = result.dataset, result.dataset.attrs
-    files = [p for p in path.rglob("*") if p.is_file()]
+    sizes = list(_sizes(path))
     return {
         "path": str(path),
         "protocol": result.protocol,
@@ -104,8 +106,8 @@ def _about(path: Path, result: Result) -> dict[str, Any]:
         "frames": result.frames,
         "samples": data.sizes.get("sample", 0),
         "reached_s": float(data["time"].values[-1]) if result.frames and "time" in data else None,
-        "files": len(files),
-        "size_bytes": sum(p.stat().st_size for p in files),
+        "files": len(sizes),
+        "size_bytes": sum(sizes),
         "format": attrs.get("format"),
         "spec": result.spec,
         "report": _report(path, result),
@@ -123,6 +125,15 @@ def _about(path: Path, result: Result) -> dict[str, Any]:
             for name, variable in data.variables.items()
         ],
     }
+
+
+def _sizes(path: Path) -> Iterator[int]:
+    """Of all files [bytes], but those that a run replaces meanwhile."""
+    for file in path.rglob("*"):
+        with suppress(OSError):
+            about = file.stat()
+            if stat.S_ISREG(about.st_mode):
+                yield about.st_size
 
 
 def _status(path: Path, result: Result) -> str:
@@ -186,13 +197,9 @@ def _provenance(about: dict[str, Any]) -> Iterator[tuple[str, str]]:
 
 
 def _short(value: object) -> str:
-    return (
-        f"{value:g}"
-        if isinstance(value, float)
-        else quoted(value, 80)
-        if not isinstance(value, str)
-        else value
-    )
+    if isinstance(value, str):
+        return value
+    return f"{value:g}" if isinstance(value, float) else quoted(value, 80)
 
 
 def _sized(variable: dict[str, Any]) -> str:
