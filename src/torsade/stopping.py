@@ -7,7 +7,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-__all__ = ["by_sigterm", "exit_code", "heard", "ours", "sigterm_stops"]
+__all__ = ["by_sigterm", "exit_code", "heard", "ours", "sigterm_stops", "stop"]
 
 _last = signal.SIGINT
 
@@ -28,14 +28,15 @@ def by_sigterm() -> bool:
     return _last == signal.SIGTERM
 
 
-def _stop(number: int, frame: object) -> None:
+def stop(number: int, frame: object) -> None:
+    """Handle a signal as Ctrl-C is handled."""
     heard(number)
     raise KeyboardInterrupt
 
 
 def ours(number: int) -> bool:
     """Whether nobody else handles this signal, so that a run may take it to stop between two steps."""
-    plain = (signal.SIG_DFL, _stop) if number == signal.SIGTERM else (signal.default_int_handler,)
+    plain = (signal.SIG_DFL, stop) if number == signal.SIGTERM else (signal.default_int_handler,)
     return signal.getsignal(number) in plain
 
 
@@ -46,7 +47,7 @@ def sigterm_stops() -> Iterator[None]:
     if not in_main or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
         yield
         return
-    signal.signal(signal.SIGTERM, _stop)
+    signal.signal(signal.SIGTERM, stop)
     try:
         yield
     finally:

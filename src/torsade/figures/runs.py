@@ -207,13 +207,25 @@ def _outcomes(
 
 
 def _wait() -> None:
-    """Leave Ctrl-C to whoever waits for this process, while it has nothing to do."""
+    """Leave Ctrl-C and SIGTERM to whoever waits for this process, while it has nothing to do."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _leave)
+
+
+def _leave(number: int, frame: object) -> None:
+    """Begin nothing more, and end a process that nobody waits for any more."""
+    stopping.heard(number)
+    waiting = multiprocessing.parent_process()
+    if waiting is None or not waiting.is_alive():
+        os._exit(128 + number)
 
 
 def _run_apart(job: Mapping[str, tuple[Spec, Path]], fresh: bool) -> dict[str, str | None]:
-    """Runs in a process of their own, which Ctrl-C stops."""
+    """Runs in a process of their own, which Ctrl-C and SIGTERM stop."""
+    if stopping.by_sigterm():
+        raise KeyboardInterrupt
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGTERM, stopping.stop)
     try:
         return _run(job, fresh)
     finally:
