@@ -89,7 +89,7 @@ def test_info_of_every_protocol(
         "numpy",
         "cores",
         "asked for",
-        "position"[:4],
+        "wall time",
     ):
         assert words in out
 
