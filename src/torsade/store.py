@@ -109,7 +109,7 @@ def set_attributes(path: Path, changed: Mapping[str, Any]) -> None:
     import zarr
 
     with writing(path), quiet_zarr():
-        zarr.open_group(path, mode="r+").attrs.update(dict(changed))
+        zarr.open_group(path, mode="r+").update_attributes(dict(changed))
 
 
 def write_restart(part: Path, arrays: Arrays) -> None:
@@ -192,8 +192,8 @@ def _seal(path: Path, changed: Mapping[str, Any]) -> None:
     import zarr
 
     with writing(path), quiet_zarr():
-        attributes = zarr.open_group(path, mode="r+").attrs
-        attributes.update(dict(changed) | {"chunks": chunk_files(path)})
+        group = zarr.open_group(path, mode="r+")
+        group.update_attributes(dict(changed) | {"chunks": chunk_files(path)})
         zarr.consolidate_metadata(str(path))
 
 

@@ -97,6 +97,12 @@ COMMANDS = MappingProxyType(
         "info": _Command((), ("--json",), _NO_RESULT, _RESULT),
         "export": _Command(("--to", "--frames", "--out"), ("--json", "--overwrite"), _NO_EXPORT, _RESULT),
         "open": _Command(("--frame", "--picture"), ("--json",), _NO_RESULT, _RESULT),
+        "movie": _Command(
+            ("--out", "--seconds", "--fps", "--size", "--frames", "--colour"),
+            ("--whole", "--json"),
+            "nothing is given; give the result of a run, such as snap.zarr",
+            "{} comes after the result; give one result at a time, such as torsade movie snap.zarr",
+        ),
         "knots list": _Command(("--kind",), ("--json",), "", _QUOTE),
         "knots show": _Command((), ("--json",), "nothing is given; give a name such as reef or 5_1", _QUOTE),
         "knots build": _Command(
