@@ -188,7 +188,7 @@ def _read(value: str | float, dimension: str) -> Fraction | float:
     if isinstance(value, str):
         return _from_text(value, wanted)
     if isinstance(value, Real) and not isinstance(value, bool):
-        return value  # type: ignore[return-value]  # whatever number it is
+        return value
     raise QuantityError(f"{quoted(value)} is not a number; {_advice(wanted)}")
 
 
@@ -202,7 +202,7 @@ def metres(name: str, value: float | str) -> float:
         raise QuantityError(f"{name} {error}") from None
 
 
-def _to_float(number: Real | Fraction) -> float:
+def _to_float(number: Real | Fraction | float) -> float:
     try:
         return float(number)
     except OverflowError:

@@ -90,6 +90,18 @@ COMMANDS = MappingProxyType(
             "",
             "{} comes after the number; make one figure at a time, such as torsade figure 4-5",
         ),
+        "sweep": _Command(
+            ("--out", "--workers", "--scheduler", "--at-most"),
+            ("--retry-failed", "--keep", "--dry-run", "--json"),
+            "nothing is given; give a TOML file, such as pieces.toml",
+            "{} comes after the file; give one file, and every value after its option",
+        ),
+        "query": _Command(
+            (),
+            ("--csv", "--json"),
+            "nothing is given; give the folder of a sweep, such as pieces",
+            "{} comes after the query; put the whole query in one pair of quotes",
+        ),
         "knots list": _Command(("--kind",), ("--json",), "", _QUOTE),
         "knots show": _Command((), ("--json",), "nothing is given; give a name such as reef or 5_1", _QUOTE),
         "knots build": _Command(

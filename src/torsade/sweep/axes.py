@@ -95,7 +95,9 @@ def _range(spec: type[Spec], name: str, given: Mapping[str, Any], label: str) ->
         return [float(x) for x in found]
     broken = next((float(x) for x in found if x != int(x)), None)
     if broken is not None:
-        raise TorsadeError(f"{label} has {broken:g} in it and takes whole numbers; give another count or step")
+        raise TorsadeError(
+            f"{label} has {broken:g} in it and takes whole numbers; give another count or step"
+        )
     return [int(x) for x in found]
 
 
@@ -180,7 +182,7 @@ def draws(
 def numbers(names: Sequence[str], count: int, seed: int, design: str) -> dict[str, Floats]:
     """Numbers in [0, 1), shape (count,), by name: independent, or spread evenly over all names together.
 
-    `uniform`: every name has a stream of its own; `sobol`: scrambled Sobol points; `latin`: a Latin hypercube.
+    `uniform` gives every name a stream of its own, `sobol` scrambled Sobol points, `latin` a Latin hypercube.
     """
     import numpy as np
 

@@ -88,7 +88,7 @@ class Sweep:
         *,
         fixed: Mapping[str, Any] | None = None,
         grid: Mapping[str, Any] | None = None,
-        zip: Mapping[str, Any] | None = None,  # noqa: A002 - as the table is called
+        zip: Mapping[str, Any] | None = None,
         points: Sequence[Mapping[str, Any]] = (),
         random: Mapping[str, Any] | None = None,
         keep: str = "numbers",
@@ -104,8 +104,12 @@ class Sweep:
         for name, value in self.fixed.items():
             check_field(self.spec, name)
             if isinstance(value, list | dict):
-                raise TorsadeError(f"{name} in [fixed] is {quoted(value)}; give one value, or put it in [grid]")
-        self.axes = tuple(self._axes(_table("grid", grid), _table("zip", zip), points, _table("random", random)))
+                raise TorsadeError(
+                    f"{name} in [fixed] is {quoted(value)}; give one value, or put it in [grid]"
+                )
+        self.axes = tuple(
+            self._axes(_table("grid", grid), _table("zip", zip), points, _table("random", random))
+        )
         _check_once([*self.fixed, *(name for axis in self.axes for name in axis.fields)])
 
     def _axes(
@@ -122,7 +126,9 @@ class Sweep:
 
     def _listed(self, points: object) -> Axis:
         if not isinstance(points, Sequence) or not all(isinstance(p, Mapping) and p for p in points):
-            raise TorsadeError("points is not a list of tables; begin each with [[points]], then give its fields")
+            raise TorsadeError(
+                "points is not a list of tables; begin each with [[points]], then give its fields"
+            )
         fields = tuple(points[0])
         for k, point in enumerate(points):
             if set(point) != set(fields):
@@ -139,7 +145,9 @@ class Sweep:
         unknown = next((name for name in given if name not in known), None)
         if unknown is not None:
             hint = f"put it under [random.fields], as {unknown} = {{ from = ..., to = ... }}"
-            raise TorsadeError(f"[random] has {unknown!r}; it takes {', '.join(known)}; a field that varies, {hint}")
+            raise TorsadeError(
+                f"[random] has {unknown!r}; it takes {', '.join(known)}; a field that varies, {hint}"
+            )
         count, seed, design = given.get("count"), given.get("seed", 0), given.get("design", "uniform")
         for name, value, least in (("count", count, 1), ("seed", seed, 0)):
             most = MOST_VALUES if name == "count" else 2**63 - 1
@@ -171,7 +179,7 @@ class Sweep:
         """Run what is not stored in a folder yet; see `torsade.sweep.run`."""
         from torsade.sweep.engine import run
 
-        return run(self, out, **options)
+        return run(self, out, **options).catalogue
 
     @property
     def varied(self) -> tuple[str, ...]:
@@ -207,8 +215,8 @@ class Sweep:
                 raise TorsadeError(f"{error} (at {told})" if told else str(error)) from None
             if key in seen:
                 raise TorsadeError(
-                    f"points {seen[key]} and {number} are the same, {self.told(varied)}; give every combination "
-                    "once"
+                    f"points {seen[key]} and {number} are the same, {self.told(varied)}; give every "
+                    "combination once"
                 )
             seen[key] = number
             found.append(Point(number, key, spec))
@@ -243,7 +251,9 @@ def _zipped(columns: Mapping[str, list[Any]]) -> Axis:
     sizes = {name: len(column) for name, column in columns.items()}
     if len(set(sizes.values())) > 1:
         told = ", ".join(f"{name} has {size}" for name, size in sizes.items())
-        raise TorsadeError(f"fields of [zip] go together and have unequal numbers of values: {told}; give as many")
+        raise TorsadeError(
+            f"fields of [zip] go together and have unequal numbers of values: {told}; give as many"
+        )
     return Axis(tuple(columns), list(zip(*columns.values(), strict=True)))
 
 

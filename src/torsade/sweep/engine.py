@@ -7,7 +7,7 @@ import multiprocessing
 import re
 import shutil
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -39,8 +39,8 @@ GRACE = 10.0
 """How long runs may take to heed Ctrl-C [s]."""
 
 BUSY = (
-    "another command runs the sweep in {out} ({owner}); wait for it or give another --out, or remove {lock} when "
-    "no such command goes on"
+    "another command runs the sweep in {out} ({owner}); wait for it or give another --out, or remove {lock} "
+    "when no such command goes on"
 )
 
 _LEFT_BEHIND = re.compile(r"part\.[0-9a-f]{12}\.new|[0-9a-f]{16}\.[0-9a-f]{12}\.new\.zarr.*", re.A)
@@ -137,7 +137,15 @@ def run(
         con.close()
     old = sum(status.get(p.key) == "failed" for p in there)
     return Summary(
-        Catalogue(folder), len(points), len(there), store.ran, store.failed + old, killed, used, wall, store.compute
+        Catalogue(folder),
+        len(points),
+        len(there),
+        store.ran,
+        store.failed + old,
+        killed,
+        used,
+        wall,
+        store.compute,
     )
 
 
@@ -237,7 +245,12 @@ class _Store:
 
 
 def _run(
-    sweep: Sweep, units: Sequence[Unit], store: _Store, keep: Path | None, options: dict[str, Any], tell: Progress
+    sweep: Sweep,
+    units: Sequence[Unit],
+    store: _Store,
+    keep: Path | None,
+    options: dict[str, Any],
+    tell: Progress,
 ) -> tuple[float, int, int]:
     """Run units; when the first batch was given [s], and how many workers there were and were killed."""
     stop = multiprocessing.get_context("spawn").Event()
@@ -285,8 +298,8 @@ def _interrupted(store: _Store) -> str:
     total = len(store._points)
     are = "is" if store.written == 1 else "are"
     return (
-        f"interrupted; {store.written} of {counted(total, 'point')} {are} stored in {str(store._folder)!r}; the "
-        "same command goes on"
+        f"interrupted; {store.written} of {counted(total, 'point')} {are} stored in {str(store._folder)!r}; "
+        "the same command goes on"
     )
 
 
@@ -310,7 +323,9 @@ class _Teller:
         store, total = self._store, len(self._store._points)
         self._share = (total - self._count + store.ran) / total
         note = f"{total - self._count + store.ran} of {counted(total, 'point')}"
-        note += f", {store.failed} failed" * bool(store.failed) + f", {counted(killed, 'worker')} killed" * bool(killed)
+        note += f", {store.failed} failed" * bool(
+            store.failed
+        ) + f", {counted(killed, 'worker')} killed" * bool(killed)
         if store.ran:
             left = (time.monotonic() - self._began) / store.ran * (self._count - store.ran)
             note += f", about {_duration(left)} left"

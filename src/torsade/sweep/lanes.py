@@ -53,7 +53,9 @@ class _Context(SpawnContext):
 def _spared() -> Iterator[None]:
     """What a process that starts meanwhile gets from this one."""
     main = sys.modules["__main__"]
-    names = {name: vars(main)[name] for name in ("__file__", "__spec__") if name in vars(main)}
+    names: dict[str, Any] = {
+        name: vars(main)[name] for name in ("__file__", "__spec__") if name in vars(main)
+    }
     before = {name: os.environ.get(name) for name in ONE_THREAD}
     try:
         main.__spec__ = None

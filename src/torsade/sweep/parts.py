@@ -21,7 +21,20 @@ from torsade.errors import TorsadeError
 if TYPE_CHECKING:
     from duckdb import DuckDBPyConnection
 
-__all__ = ["Part", "add", "connect", "damaged", "live", "literal", "merge_all", "name_of", "sync", "union", "write_rows", "write_table"]
+__all__ = [
+    "Part",
+    "add",
+    "connect",
+    "damaged",
+    "literal",
+    "live",
+    "merge_all",
+    "name_of",
+    "sync",
+    "union",
+    "write_rows",
+    "write_table",
+]
 
 FAN = 8
 """So many neighbours of like size are merged into one."""

@@ -39,6 +39,10 @@ class Rows(NamedTuple):
     types: tuple[str, ...]
     rows: list[tuple[Any, ...]]
 
+    def rows_of(self, width: int) -> list[tuple[Any, ...]]:
+        """The first columns only."""
+        return [row[:width] for row in self.rows]
+
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Columns as arrays, shape (n_rows,), by name; numbers that are not known are nan."""
         import numpy as np
@@ -114,9 +118,7 @@ class Catalogue:
 
     def counts(self) -> dict[str, int]:
         """How many points are done, failed and waiting."""
-        found: Mapping[str, int] = dict(
-            self.query("SELECT status, count(*) FROM runs GROUP BY status").rows  # type: ignore[arg-type]
-        )
+        found: Mapping[str, int] = dict(self.query("SELECT status, count(*) FROM runs GROUP BY status").rows)
         return {status: found.get(status, 0) for status in ("done", "failed", "waiting")}
 
     def _opened(self) -> DuckDBPyConnection:

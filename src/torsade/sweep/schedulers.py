@@ -13,7 +13,14 @@ __all__ = ["OPTIONS", "QUEUES", "check_options", "connected"]
 QUEUES = {"slurm": "SLURMCluster", "pbs": "PBSCluster"}
 """Queueing systems, and what dask-jobqueue calls them."""
 
-OPTIONS = {"queue": str, "account": str, "cores": int, "memory": str, "walltime": str, "processes": int}
+OPTIONS: dict[str, type[str] | type[int]] = {
+    "queue": str,
+    "account": str,
+    "cores": int,
+    "memory": str,
+    "walltime": str,
+    "processes": int,
+}
 """What [cluster] may say of a job; dask's own configuration, jobqueue.yaml, says the rest."""
 
 INSTALL = 'pip install "torsade[cluster]"'
@@ -34,7 +41,9 @@ def check_options(options: Mapping[str, Any]) -> None:
                 f"[cluster] has {name!r}; it takes {', '.join(OPTIONS)}; set others in dask's jobqueue.yaml"
             )
         kind = OPTIONS[name]
-        fits = isinstance(value, kind) and not isinstance(value, bool) and (kind is str or value > 0)
+        fits = (
+            isinstance(value, kind) and not isinstance(value, bool) and (isinstance(value, str) or value > 0)
+        )
         if not fits or (kind is str and (not value.isprintable() or not value.strip())):
             wanted = "one line of text" if kind is str else "a whole number above 0"
             raise TorsadeError(f"{name} in [cluster] is {quoted(value)}; give {wanted}")
@@ -80,14 +89,17 @@ def _client(where: Any) -> Any:
     try:
         from distributed import Client
     except ImportError:
-        raise TorsadeError(f"--scheduler needs dask, which is not installed; install it with {INSTALL}") from None
+        raise TorsadeError(
+            f"--scheduler needs dask, which is not installed; install it with {INSTALL}"
+        ) from None
+    make: Callable[..., Any] = Client
     try:
-        return Client(where, timeout=PATIENCE, set_as_default=False)
+        return make(where, timeout=PATIENCE, set_as_default=False)
     except (OSError, TimeoutError, ValueError) as error:
         reason = " ".join(str(error).split()).rstrip(".")[:120] or type(error).__name__
         raise TorsadeError(
-            f"no dask scheduler answers at {str(where)!r} ({reason}); start one with dask scheduler, and workers "
-            "with dask worker ADDRESS --nthreads 1"
+            f"no dask scheduler answers at {str(where)!r} ({reason}); start one with dask scheduler, and "
+            "workers with dask worker ADDRESS --nthreads 1"
         ) from None
 
 
@@ -107,6 +119,7 @@ def _queue(name: str, workers: int | None, options: Mapping[str, Any]) -> Any:
     except Exception as error:  # whatever the queue's own commands say
         reason = " ".join(str(error).split()).rstrip(".")[:200] or type(error).__name__
         raise TorsadeError(
-            f"{name} takes no jobs ({reason}); see that its commands work here, and set [cluster] in the TOML file"
+            f"{name} takes no jobs ({reason}); see that its commands work here, and set [cluster] in the TOML "
+            "file"
         ) from None
     return cluster

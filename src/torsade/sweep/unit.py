@@ -25,7 +25,12 @@ OTHER_VERSION = "other sources"
 _ONE_AT_A_TIME = threading.Lock()
 """Runs use one thread; a worker with several would let them share a core."""
 
-_stopped: Callable[[], bool] = lambda: False
+
+def _never() -> bool:
+    return False
+
+
+_stopped: Callable[[], bool] = _never
 
 
 class Unit(NamedTuple):
@@ -139,9 +144,7 @@ def flat(report: Mapping[str, Any], spec: Mapping[str, Any]) -> dict[str, Any]:
 
     What repeats a field of the specification, and the computing time, are left out.
     """
-    return {
-        name: value for name, value in _entries("", report) if name not in spec and name != "wall_s"
-    }
+    return {name: value for name, value in _entries("", report) if name not in spec and name != "wall_s"}
 
 
 def _entries(prefix: str, table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["warm_up"]
 
 
-class _Warm(Exception):
+class _Warm(BaseException):
     """A run has made its first steps: all that is needed is compiled."""
 
 

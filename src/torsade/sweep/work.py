@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections import Counter, deque
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Future, wait
@@ -117,8 +116,8 @@ class Work:
         """Outcomes of a batch; units that were not come to are to be run yet."""
         if any(outcome.status == OTHER_VERSION for outcome in outcomes):
             raise TorsadeError(
-                "the workers have another version of torsade than this command; give them the same, and start "
-                "them anew"
+                "the workers have another version of torsade than this command; give them the same, and "
+                "start them anew"
             )
         through = {outcome.key for outcome in outcomes}
         self._waiting.extendleft(unit for unit in reversed(batch) if unit.key not in through)
@@ -132,7 +131,9 @@ class Work:
     ) -> list[Outcome]:
         """What to do about a batch whose worker was killed: it is given again, one by one."""
         if isinstance(failure, CancelledError):
-            raise TorsadeError("the scheduler let go of the sweep; the same command goes on with what is left")
+            raise TorsadeError(
+                "the scheduler let go of the sweep; the same command goes on with what is left"
+            )
         if isinstance(failure, BrokenExecutor):
             # All batches of the lane are lost, and the first is what ran.
             future, batch = lane.given.popleft()
@@ -159,13 +160,13 @@ class Work:
         self._in_vain += 1
         if not lane.remake():
             raise TorsadeError(
-                "the executor has lost its workers and cannot be used any more; give a new one, which goes on "
-                "with what is left"
+                "the executor has lost its workers and cannot be used any more; give a new one, which goes "
+                "on with what is left"
             )
         if self._in_vain > MOST_IN_VAIN:
             raise TorsadeError(
-                f"{counted(self._in_vain, 'worker')} died one after another and nothing got done; see whether "
-                "memory is short, or torsade run works"
+                f"{counted(self._in_vain, 'worker')} died one after another and nothing got done; see "
+                "whether memory is short, or torsade run works"
             )
 
 
@@ -180,7 +181,7 @@ def _reason(failure: BaseException) -> str:
     """Why a unit failed whose worker did not come back."""
     if isinstance(failure, BrokenExecutor) or type(failure).__name__ == "KilledWorker":
         return (
-            f"the process that ran it was killed {MOST_DEATHS} times or more, as it is when memory runs out; give "
-            "it more memory or fewer workers"
+            f"the process that ran it was killed {MOST_DEATHS} times or more, as it is when memory runs out; "
+            "give it more memory or fewer workers"
         )
     return f"{type(failure).__name__}: " + " ".join(str(failure).split()).rstrip(".")[:300]
