@@ -144,9 +144,9 @@ class Sweep:
         known = ("count", "seed", "design", "fields")
         unknown = next((name for name in given if name not in known), None)
         if unknown is not None:
-            hint = f"put it under [random.fields], as {unknown} = {{ from = ..., to = ... }}"
             raise TorsadeError(
-                f"[random] has {unknown!r}; it takes {', '.join(known)}; a field that varies, {hint}"
+                f"[random] has {unknown!r}; it takes {', '.join(known)}; put a field that varies under "
+                "[random.fields]"
             )
         count, seed, design = given.get("count"), given.get("seed", 0), given.get("design", "uniform")
         for name, value, least in (("count", count, 1), ("seed", seed, 0)):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -70,6 +71,13 @@ def read_about(folder: Path) -> dict[str, Any] | None:
     return dict(found) if ours else None
 
 
+def _complaint(error: Exception) -> str:
+    """What DuckDB says of a query, in one sentence."""
+    text = " ".join(str(error).split("\n\nLINE")[0].split()).rstrip(".")
+    text = re.sub(r"^[\w ]+ Error: ", "", text).replace("! ", "; ").replace(". ", "; ")
+    return text[:1].lower() + text[1:]
+
+
 class Catalogue:
     """The sweep in a folder.
 
@@ -102,16 +110,17 @@ class Catalogue:
         TorsadeError
             When the query is wrong, or a file of the sweep is damaged.
         """
+        con = self._opened()
         import duckdb
 
-        con = self._opened()
         try:
+            if not con.extract_statements(sql):
+                raise TorsadeError('the query is empty; give one such as "SELECT * FROM runs"')
             found = con.execute(sql)
             heads = found.description or []
             rows = found.fetchall()
         except duckdb.Error as error:
-            first = " ".join(str(error).split("\n\nLINE")[0].split()).rstrip(".")
-            raise TorsadeError(f"the query cannot be answered: {first}") from None
+            raise TorsadeError(f"the query cannot be answered: {_complaint(error)}") from None
         finally:
             con.close()
         return Rows(tuple(h[0] for h in heads), tuple(str(h[1]) for h in heads), rows)

@@ -119,7 +119,7 @@ def _queue(name: str, workers: int | None, options: Mapping[str, Any]) -> Any:
     except Exception as error:  # whatever the queue's own commands say
         reason = " ".join(str(error).split()).rstrip(".")[:200] or type(error).__name__
         raise TorsadeError(
-            f"{name} takes no jobs ({reason}); see that its commands work here, and set [cluster] in the TOML "
-            "file"
+            f"{name} takes no jobs ({reason}); see that its commands work here, and set [cluster] in the "
+            "TOML file"
         ) from None
     return cluster
