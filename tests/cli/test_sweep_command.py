@@ -79,7 +79,7 @@ def test_what_was_run_is_said_as_json(bent: Path) -> None:
 
 
 def test_a_query_comes_as_table_csv_and_json(bent: Path) -> None:
-    sql = "SELECT twist, max(thrust_N) AS thrust, list(end_distance) AS ends FROM runs GROUP BY twist ORDER BY 1"
+    sql = "SELECT twist, max(thrust_N) AS thrust, list(end_distance) AS ends FROM runs GROUP BY 1 ORDER BY 1"
     table = shell("query", "bent", sql, cwd=bent).stdout.splitlines()
     assert table[0].split() == ["twist", "thrust", "ends"]
     assert len(table) == 3

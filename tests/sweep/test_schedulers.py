@@ -113,7 +113,7 @@ def test_nobody_at_an_address_is_said(monkeypatch):
     [
         (
             {"job_script_prologue": "rm"},
-            r"\[cluster\] has 'job_script_prologue'; it takes queue, .*jobqueue.yaml",
+            r"\[cluster\] has 'job_script_prologue'; it takes queue, .*jobqueue",
         ),
         ({"cores": "4"}, r"cores in \[cluster\] is '4'; give a whole number above 0"),
         ({"queue": "a\n#SBATCH --uid=0"}, r"queue in \[cluster\] is .*; give one line of text"),

@@ -265,7 +265,7 @@ def _run(
         try:
             for outcomes in work.outcomes(patience.end):
                 store.take(outcomes)
-                told.now(work.killed)
+                told.now(work.killed, sum(lane.workers for lane in lanes))
             return began, sum(lane.workers for lane in lanes), work.killed
         except KeyboardInterrupt:
             stop.set()
@@ -319,7 +319,8 @@ class _Teller:
     def stopping(self) -> None:
         self._tell(self._share, "stopping ... (Ctrl-C again to stop at once)")
 
-    def now(self, killed: int) -> None:
+    def now(self, killed: int, workers: int) -> None:
+        """Say how many points are through, and how long the others may take."""
         store, total = self._store, len(self._store._points)
         self._share = (total - self._count + store.ran) / total
         note = f"{total - self._count + store.ran} of {counted(total, 'point')}"
@@ -329,7 +330,7 @@ class _Teller:
         if store.ran:
             left = (time.monotonic() - self._began) / store.ran * (self._count - store.ran)
             note += f", about {_duration(left)} left"
-        self._tell(self._share, note)
+        self._tell(self._share, note if workers else "waiting for workers of the scheduler")
 
 
 def _duration(seconds: float) -> str:

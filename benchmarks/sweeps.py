@@ -1,0 +1,309 @@
+"""Sweeps whose workers and command are killed, on processes and on dask: every point once; and overhead.
+
+Writes its tables into docs/sweeps.md, between marks, unless `--no-write` is given.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from benchmarks import common
+from torsade.errors import TorsadeError
+from torsade.sweep import Catalogue, Sweep, run
+
+PAGE = Path(__file__).parents[1] / "docs" / "sweeps.md"
+
+DESIGN = """protocol = "snap-twist"
+
+[fixed]
+edges = 10
+frames = 1
+disorder = 0.05
+duration = "{duration}"
+
+[grid]
+twist = {{ from = "0 deg", to = "20 deg", count = {twists} }}
+seed = {{ from = 1, to = {seeds} }}
+"""
+
+WORKERS = 2
+LOOK_EVERY = 0.3  # [s]
+CHECKED = 20
+"""Points that are run once more, alone, and compared to the last bit."""
+
+QUERY = "SELECT twist, avg(fragments), stddev(fragments) FROM runs WHERE status = 'done' GROUP BY twist"
+
+
+def processes() -> Iterator[tuple[int, int, str]]:
+    """Number, parent and command line of every process, as Linux tells them."""
+    for entry in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError):
+            parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+            yield int(entry.name), parent, (entry / "cmdline").read_text().replace("\0", " ")
+
+
+def workers_of(command: int) -> list[int]:
+    """The processes that run points for a sweep."""
+    return [number for number, parent, line in processes() if parent == command and "spawn_main" in line]
+
+
+def stored(folder: Path) -> int:
+    """Points that are done, as a reader sees them while the sweep goes on."""
+    with suppress(TorsadeError):
+        return Catalogue(folder).counts()["done"]
+    return 0
+
+
+def begun(design: Path, folder: Path, *more: str) -> subprocess.Popen[str]:
+    """A sweep, as a command of its own."""
+    command = [sys.executable, "-m", "torsade", "sweep", str(design), "--out", str(folder), "--json", *more]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+
+
+def until(reached: Callable[[], bool], running: subprocess.Popen[str]) -> bool:
+    """Wait; whether it came before the command ended."""
+    while running.poll() is None:
+        if reached():
+            return True
+        time.sleep(LOOK_EVERY)
+    return False
+
+
+def kill(process: int) -> None:
+    os.kill(process, signal.SIGKILL)
+
+
+def under_fire(design: Path, folder: Path, points: int) -> dict[str, Any]:
+    """A sweep whose worker is killed once and which is killed itself twice, each time to be gone on with."""
+    began = time.perf_counter()
+    seen: list[int] = []
+    worker_kills = 0
+    for share in (0.3, 0.6, None):
+        running = begun(design, folder, "--workers", str(WORKERS))
+        before = stored(folder)
+        aim = points if share is None else share * points
+        if share == 0.3 and until(lambda: stored(folder) > 0.1 * points, running):
+            kill(workers_of(running.pid)[0])
+            worker_kills += 1
+        if share is not None and until(lambda aim=aim: stored(folder) >= aim, running):  # type: ignore[misc]
+            kill(running.pid)
+            running.wait()
+            seen.append(stored(folder))
+            if seen[-1] < before:
+                raise RuntimeError("points that were stored have gone")
+    out, _ = running.communicate()
+    last = json.loads(out)
+    wall = time.perf_counter() - began
+    return {
+        "worker_kills": worker_kills,
+        "command_kills": len(seen),
+        "stored_when_killed": seen,
+        "stored_at_last_start": last["stored_before"],
+        "wall_s": wall,
+        **verified(design, folder, points),
+    }
+
+
+def verified(design: Path, folder: Path, points: int) -> dict[str, Any]:
+    """Whether every point is there once, whole, with the numbers that it has when it is run alone."""
+    catalogue = Catalogue(folder)
+    rows, keys, done, whole = catalogue.query(
+        "SELECT count(*), count(DISTINCT key), count(*) FILTER (status = 'done'), "
+        "count(*) FILTER (fragments IS NOT NULL AND len(lengths_m) = fragments) FROM runs"
+    ).rows[0]
+    (twice,) = catalogue.query("SELECT count(*) - count(DISTINCT key) FROM stored").rows[0]
+    every = Sweep.read(design).points()
+    found = {r[0]: r[1:] for r in catalogue.query("SELECT key, steps, lengths_m, li FROM runs").rows}
+    alike = 0
+    for point in every[:: max(1, points // CHECKED)][:CHECKED]:
+        report = point.spec.report(point.spec.run())
+        alike += found[point.key] == (report["steps"], report["lengths_m"], report["li"])
+    taken = common.seconds(lambda: Catalogue(folder).query(QUERY), 9, common.WALL)
+    unit, compute = catalogue.query("SELECT median(wall_s), sum(wall_s) FROM runs").rows[0]
+    left = [path.name for path in folder.iterdir() if not re.search(r"\.(parquet|json)$", path.name)]
+    return {
+        "points": points,
+        "every_point_once": bool(rows == keys == done == whole == points and twice == 0),
+        "checked_alone": min(CHECKED, points),
+        "alike": alike,
+        "left_behind": len(left),
+        "unit_s": unit,
+        "compute_s": compute,
+        "query_s": taken,
+    }
+
+
+@contextmanager
+def dask_cluster() -> Iterator[tuple[str, list[subprocess.Popen[str]]]]:
+    """A dask scheduler and two workers on this machine: its address, and the workers."""
+    began: list[subprocess.Popen[str]] = []
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            file = Path(folder) / "scheduler.json"
+            began.append(_dask("scheduler", "--scheduler-file", str(file), "--port", "0", "--no-dashboard"))
+            while not file.exists():
+                time.sleep(0.1)
+            address = json.loads(file.read_text())["address"]
+            for _ in range(WORKERS):
+                began.append(
+                    _dask("worker", address, "--nthreads", "1", "--local-directory", folder, "--no-dashboard")
+                )
+            yield address, began[1:]
+        finally:
+            for process in reversed(began):
+                process.terminate()
+                process.wait()
+
+
+def _dask(*words: str) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "distributed.cli.dask_" + words[0], *words[1:]]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True)
+
+
+def on_dask(design: Path, folder: Path, points: int, same: Path) -> dict[str, Any]:
+    """The same sweep on dask, where a worker is killed; its numbers beside those of processes."""
+    with dask_cluster() as (address, workers):
+        began = time.perf_counter()
+        running = begun(design, folder, "--scheduler", address)
+        kills = 0
+        if until(lambda: stored(folder) > 0.3 * points, running):
+            parents = {workers[0].pid}
+            for number, parent, _ in processes():  # the worker itself is a child of its nanny
+                if parent in parents:
+                    with suppress(ProcessLookupError):
+                        kill(number)
+            kills = 1
+        out, _ = running.communicate()
+        wall = time.perf_counter() - began
+    if running.returncode:
+        raise RuntimeError(f"the sweep on dask failed: {out}")
+    sql = "SELECT * EXCLUDE (wall_s) FROM runs"
+    alike = Catalogue(folder).query(sql).rows == Catalogue(same).query(sql).rows
+    return {
+        "worker_kills": kills,
+        "command_kills": 0,
+        "wall_s": wall,
+        "same_as_processes": alike,
+        **verified(design, folder, points),
+    }
+
+
+def overhead(folder: Path, duration: str, count: int) -> dict[str, Any]:
+    """What a sweep costs beside computing: (wall · workers − sum of compute) / sum of compute, in one run."""
+    sweep = Sweep(
+        "snap-twist",
+        fixed={"edges": 10, "frames": 1, "disorder": 0.05, "duration": duration},
+        grid={"seed": {"from": 1, "to": count}},
+    )
+    done = run(sweep, folder, workers=WORKERS)
+    walls = [row[0] for row in done.catalogue.query("SELECT wall_s FROM runs").rows]
+    return {
+        "points": count,
+        "unit_s": statistics.median(walls),
+        "workers": done.workers,
+        "wall_s": done.wall_s,
+        "compute_s": done.compute_s,
+        "overhead": done.wall_s * done.workers / done.compute_s - 1,
+    }
+
+
+def kills_text(found: dict[str, Any]) -> str:
+    rows = []
+    for name, label in (("processes", "two processes"), ("dask", "dask, two workers")):
+        one = found.get(name)
+        if one is not None:
+            rows.append(
+                (
+                    label,
+                    one["points"],
+                    one["worker_kills"],
+                    one["command_kills"],
+                    "yes" if one["every_point_once"] else "NO",
+                    f"{one['alike']} of {one['checked_alone']}",
+                    one["left_behind"],
+                    f"{1e3 * one['unit_s']:.0f}",
+                    f"{one['wall_s']:.0f}",
+                    f"{1e3 * one['query_s']:.0f}",
+                )
+            )
+    heads = (
+        "on",
+        "points",
+        "workers killed",
+        "command killed",
+        "every point once",
+        "alike when run alone",
+        "half-written files",
+        "a run [ms]",
+        "in all [s]",
+        "a query [ms]",
+    )
+    return common.table(heads, rows)
+
+
+def overhead_text(found: Sequence[dict[str, Any]]) -> str:
+    rows = [
+        (
+            one["points"],
+            f"{one['unit_s']:.2g}",
+            f"{one['wall_s']:.1f}",
+            f"{one['compute_s']:.1f}",
+            f"{100 * one['overhead']:.1f} %",
+        )
+        for one in found
+    ]
+    heads = ("points", "median of a run [s]", "wall [s]", "sum of runs [s]", "beside computing")
+    return common.table(heads, rows)
+
+
+def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
+    options = common.parser(__doc__)
+    options.add_argument("--points", type=int, default=10_000, help="points of the sweep that is killed")
+    options.add_argument("--no-write", action="store_true", help="leave docs/sweeps.md as it is")
+    options.add_argument("--no-dask", action="store_true", help="on processes only")
+    options.add_argument("--only", choices=("kills", "overhead"), help="one of the two tables")
+    given = options.parse_args(arguments)
+    points = 60 if given.quick else given.points
+    twists = 10 if points % 10 == 0 else 1
+    found: dict[str, Any] = {}
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        if given.only != "overhead":
+            design = folder / "pieces.toml"
+            length = "100 ms" if given.quick else "0.5 ms"
+            text = DESIGN.format(duration=length, twists=max(twists, 2), seeds=points // max(twists, 2))
+            design.write_text(text)
+            points = len(Sweep.read(design))
+            found["processes"] = under_fire(design, folder / "processes", points)
+            if not (given.quick or given.no_dask):
+                found["dask"] = on_dask(design, folder / "dask", points, folder / "processes")
+        if given.only != "kills" and not given.quick:
+            found["overhead"] = [
+                overhead(folder / "long", "250 ms", 200),
+                overhead(folder / "short", "0.5 ms", 2000),
+            ]
+    tables = {}
+    if "processes" in found:
+        tables["kills"] = kills_text(found)
+    if "overhead" in found:
+        tables["overhead"] = overhead_text(found["overhead"])
+    if not (given.quick or given.no_write):
+        for name, text in tables.items():
+            common.put(text, PAGE, name)
+    return common.show(found, list(tables.values()), given.json)
+
+
+if __name__ == "__main__":
+    main()
