@@ -59,6 +59,8 @@ def test_commands_are_found() -> None:
         "figure",
         "trials",
         "material",
+        "sweep",
+        "query",
     }
     assert len(commands()) >= 5
 
@@ -146,6 +148,8 @@ def test_a_command_shown_is_a_valid_specification(line: str) -> None:
         ("knots",),
         ("trials",),
         ("material",),
+        ("sweep",),
+        ("query",),
         ("run", "prison-escape"),
         ("run", "tighten"),
         ("run", "bend-twist"),

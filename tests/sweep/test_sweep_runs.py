@@ -180,6 +180,27 @@ def test_queries_read_the_sweep_and_nothing_else(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bent", "other.csv"]
 
 
+def test_a_query_that_meets_a_merge_is_asked_again(tmp_path, monkeypatch):
+    """Files that go between being listed and being read: every point is counted, once."""
+    catalogue = in_threads(bends(), tmp_path).catalogue
+    con = parts.connect()
+    for k in range(3):
+        parts.add(con, tmp_path, [{"key": f"{k:016x}", "status": "done"}])
+    listed = parts.live
+
+    def merging(folder):
+        found = listed(folder)
+        if len(found) > 1:
+            monkeypatch.setattr(parts, "live", listed)
+            parts.merge_all(con, tmp_path)
+        return found
+
+    monkeypatch.setattr(parts, "live", merging)
+    assert catalogue.query("SELECT count(*), count(DISTINCT key) FROM stored").rows == [(9, 9)]
+    assert len(listed(tmp_path)) == 1
+    con.close()
+
+
 def test_columns_come_as_arrays(tmp_path):
     found = in_threads(bends(), tmp_path).catalogue.query(
         "SELECT end_distance, nodes, NULL::BIGINT AS none, force_N, protocol FROM runs"

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
 import re
 import signal
 from collections.abc import Iterator, Mapping
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +13,7 @@ from torsade import places
 from torsade.errors import TorsadeError, counted, reason_of
 from torsade.protocols import stored
 from torsade.results import Result
+from torsade.sweep import lanes
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Progress, Spec
@@ -92,7 +91,7 @@ def _run_missing(
     """Run what is not stored, telling what share of all is."""
     done = len(paths) - len(missing)
     tell(done / len(paths), _note(len(missing)))
-    for label in _run_all(missing, paths, fresh, workers or os.cpu_count() or 1):
+    for label in _run_all(missing, paths, fresh, workers or lanes.cores()):
         done += 1
         tell(done / len(paths), label)
 
@@ -170,9 +169,7 @@ def _outcomes(
             for label, one in job.items():
                 yield _run({label: one}, fresh)
         return
-    # Fresh interpreters: forking one that has threads, as compiled kernels do, can hang.
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(workers, len(jobs)), context, initializer=_wait) as pool:
+    with lanes.pool(min(workers, len(jobs))) as pool:
         waiting = [pool.submit(_run_apart, job, fresh) for job in jobs]
         try:
             for future in as_completed(waiting):
@@ -181,18 +178,13 @@ def _outcomes(
             pool.shutdown(cancel_futures=True)
 
 
-def _wait() -> None:
-    """Leave Ctrl-C to whoever waits for this process, while it has nothing to do."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
 def _run_apart(job: Mapping[str, tuple[Spec, Path]], fresh: bool) -> dict[str, str | None]:
     """Runs in a process of their own, which Ctrl-C stops."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
         return _run(job, fresh)
     finally:
-        _wait()
+        lanes.deaf()
 
 
 def _run(job: Mapping[str, tuple[Spec, Path]], fresh: bool) -> dict[str, str | None]:

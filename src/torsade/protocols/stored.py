@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from torsade import places, recording, store
-from torsade.errors import TorsadeError, reason_of
+from torsade.errors import TorsadeError
 from torsade.results import Result
 
 if TYPE_CHECKING:
@@ -27,12 +27,8 @@ NO_NUMBERS = ("view", "figures", "sweep", "cli")
 def key(spec: Spec) -> str:
     """A hash of all that decides the result of a specification, 16 hexadecimal digits.
 
-    It covers the fields in SI units, what is in a file of nodes, and the sources of the package.
-
-    Raises
-    ------
-    TorsadeError
-        When a file of nodes cannot be read.
+    It covers the fields in SI units, what is in a file of nodes (its name where it cannot be read, as the run
+    will say), and the sources of the package.
     """
     asked = spec.stored() | {"h": spec.h}
     if "centerline" in asked:
@@ -44,10 +40,8 @@ def _content(path: str) -> str:
     """A hash of what is in a file."""
     try:
         return hashlib.sha256(Path(path).read_bytes()).hexdigest()
-    except FileNotFoundError:
-        raise TorsadeError(f"there is no file {path!r}; give a file of nodes") from None
-    except OSError as error:
-        raise TorsadeError(f"cannot read {path!r} ({reason_of(error)}); give a file of nodes") from None
+    except OSError:
+        return path
 
 
 @lru_cache(maxsize=1)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from torsade.errors import TorsadeError
 from torsade.protocols.files import PROTOCOLS
 from torsade.sweep import parts as stored_parts
-from torsade.sweep.parts import literal, name_of
+from torsade.sweep.parts import Part, literal, name_of
 
 if TYPE_CHECKING:
     from duckdb import DuckDBPyConnection
@@ -22,8 +22,8 @@ __all__ = ["ABOUT", "POINTS", "Catalogue", "Rows", "read_about"]
 ABOUT, POINTS = "sweep.json", "points.parquet"
 """What a sweep is of, and the points that it was last asked for."""
 
-PLAIN = ("key", "status", "reason", "wall_s", "versions")
-"""Columns that every row has, besides fields and numbers."""
+TRIES = 20
+"""A query that meets a merge of files is asked again, so often at most."""
 
 
 class Rows(NamedTuple):
@@ -110,44 +110,41 @@ class Catalogue:
         TorsadeError
             When the query is wrong, or a file of the sweep is damaged.
         """
-        con = self._opened()
-        import duckdb
-
-        try:
-            if not con.extract_statements(sql):
-                raise TorsadeError('the query is empty; give one such as "SELECT * FROM runs"')
-            found = con.execute(sql)
-            heads = found.description or []
-            rows = found.fetchall()
-        except duckdb.Error as error:
-            raise TorsadeError(f"the query cannot be answered: {_complaint(error)}") from None
-        finally:
-            con.close()
-        return Rows(tuple(h[0] for h in heads), tuple(str(h[1]) for h in heads), rows)
+        for _ in range(TRIES):
+            parts = stored_parts.live(self.folder)
+            try:
+                return self._answer(sql, parts)
+            except (TorsadeError, FileNotFoundError):
+                if all(part.path.exists() for part in parts):
+                    raise
+                # Otherwise the sweep, which goes on, has merged them into another.
+        raise TorsadeError(f"{str(self.folder)!r} changes too fast to be read; ask again")
 
     def counts(self) -> dict[str, int]:
         """How many points are done, failed and waiting."""
         found: Mapping[str, int] = dict(self.query("SELECT status, count(*) FROM runs GROUP BY status").rows)
         return {status: found.get(status, 0) for status in ("done", "failed", "waiting")}
 
-    def _opened(self) -> DuckDBPyConnection:
-        """A database with the tables, closed to everything else."""
-        for attempt in range(5):
-            con = stored_parts.connect()
-            try:
-                self._fill(con)
-            except FileNotFoundError:  # the sweep that goes on has merged files
-                con.close()
-                if attempt == 4:
-                    raise
-            else:
-                return con
-        raise AssertionError
-
-    def _fill(self, con: DuckDBPyConnection) -> None:
+    def _answer(self, sql: str, parts: Sequence[Part]) -> Rows:
+        con = stored_parts.connect()
         import duckdb
 
-        parts = stored_parts.live(self.folder)
+        try:
+            self._fill(con, parts)
+            if not con.extract_statements(sql):
+                raise TorsadeError('the query is empty; give one such as "SELECT * FROM runs"')
+            found = con.execute(sql)
+            heads = found.description or []
+            return Rows(tuple(h[0] for h in heads), tuple(str(h[1]) for h in heads), found.fetchall())
+        except duckdb.Error as error:
+            raise TorsadeError(f"the query cannot be answered: {_complaint(error)}") from None
+        finally:
+            con.close()
+
+    def _fill(self, con: DuckDBPyConnection, parts: Sequence[Part]) -> None:
+        """Make the tables, and close the database to everything else."""
+        import duckdb
+
         for part in parts:
             part.verify()
         points = self.folder / POINTS

@@ -1,0 +1,33 @@
+"""A sweep whose worker is killed, and which is killed itself twice and gone on with; trimmed from 10,000 points."""
+
+from __future__ import annotations
+
+import importlib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def sweeps(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.syspath_prepend(str(ROOT))
+    return importlib.import_module("benchmarks.sweeps")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="asks Linux for processes")
+def test_every_point_once_whatever_is_killed(sweeps, capsys):
+    found = sweeps.main(["--quick", "--json"])["processes"]
+    assert capsys.readouterr().out
+    assert (found["points"], found["worker_kills"], found["command_kills"]) == (60, 1, 2)
+    assert found["every_point_once"]
+    assert found["alike"] == found["checked_alone"] == 20
+    assert found["left_behind"] == 0
+
+
+@pytest.mark.slow
+def test_small_runs_cost_little_beside_computing(sweeps, tmp_path):
+    """On a free machine it is a few per cent; here the start of two processes is in it, and other tests."""
+    assert sweeps.overhead(tmp_path / "short", "20 ms", 120)["overhead"] < 1.0
