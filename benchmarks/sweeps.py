@@ -38,6 +38,8 @@ twist = {{ from = "0 deg", to = "20 deg", count = {twists} }}
 seed = {{ from = 1, to = {seeds} }}
 """
 
+PARTS = ("processes", "dask", "overhead")
+TWISTS = 10
 WORKERS = 2
 LOOK_EVERY = 0.3  # [s]
 CHECKED = 20
@@ -268,37 +270,37 @@ def overhead_text(found: Sequence[dict[str, Any]]) -> str:
     return common.table(heads, rows)
 
 
+def measured(part: str, folder: Path, points: int, quick: bool) -> Any:
+    """One part of what is to be found; the one on dask takes what processes found in the same folder."""
+    if part == "overhead":
+        return [overhead(folder / "long", "250 ms", 200), overhead(folder / "short", "0.5 ms", 2000)]
+    design = folder / "pieces.toml"
+    duration = "100 ms" if quick else "0.5 ms"
+    design.write_text(DESIGN.format(duration=duration, twists=TWISTS, seeds=points // TWISTS))
+    points = len(Sweep.read(design))
+    if part == "dask":
+        return on_dask(design, folder / "dask", points, folder / "processes")
+    return under_fire(design, folder / "processes", points)
+
+
 def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     options = common.parser(__doc__)
     options.add_argument("--points", type=int, default=10_000, help="points of the sweep that is killed")
+    options.add_argument("--only", choices=PARTS, help="one part; with --out the others are kept from before")
+    options.add_argument("--out", help="folder to keep the sweeps in; by default they are not kept")
     options.add_argument("--no-write", action="store_true", help="leave docs/sweeps.md as it is")
-    options.add_argument("--no-dask", action="store_true", help="on processes only")
-    options.add_argument("--only", choices=("kills", "overhead"), help="one of the two tables")
     given = options.parse_args(arguments)
     points = 60 if given.quick else given.points
-    twists = 10 if points % 10 == 0 else 1
-    found: dict[str, Any] = {}
+    parts = [given.only] if given.only else PARTS[:1] if given.quick else PARTS
     with tempfile.TemporaryDirectory() as place:
-        folder = Path(place)
-        if given.only != "overhead":
-            design = folder / "pieces.toml"
-            length = "100 ms" if given.quick else "0.5 ms"
-            text = DESIGN.format(duration=length, twists=max(twists, 2), seeds=points // max(twists, 2))
-            design.write_text(text)
-            points = len(Sweep.read(design))
-            found["processes"] = under_fire(design, folder / "processes", points)
-            if not (given.quick or given.no_dask):
-                found["dask"] = on_dask(design, folder / "dask", points, folder / "processes")
-        if given.only != "kills" and not given.quick:
-            found["overhead"] = [
-                overhead(folder / "long", "250 ms", 200),
-                overhead(folder / "short", "0.5 ms", 2000),
-            ]
-    tables = {}
-    if "processes" in found:
-        tables["kills"] = kills_text(found)
-    if "overhead" in found:
-        tables["overhead"] = overhead_text(found["overhead"])
+        folder = Path(given.out or place)
+        folder.mkdir(exist_ok=True)
+        kept = folder / "found.json"
+        found: dict[str, Any] = json.loads(kept.read_text()) if kept.exists() else {}
+        for part in parts:
+            found[part] = measured(part, folder, points, given.quick)
+            kept.write_text(json.dumps(found))
+    tables = {"kills": kills_text(found), "overhead": overhead_text(found.get("overhead", []))}
     if not (given.quick or given.no_write):
         for name, text in tables.items():
             common.put(text, PAGE, name)

@@ -1,4 +1,4 @@
-"""A sweep whose worker is killed, and which is killed itself twice and gone on with; trimmed from 10,000 points."""
+"""A sweep whose worker is killed, and which is killed itself twice and gone on with: every point once."""
 
 from __future__ import annotations
 
