@@ -68,10 +68,10 @@ def stored(folder: Path) -> int:
     return 0
 
 
-def begun(design: Path, folder: Path, *more: str) -> subprocess.Popen[str]:
+def begun(design: Path, folder: Path, *more: str, errors: int | None = None) -> subprocess.Popen[str]:
     """A sweep, as a command of its own."""
     command = [sys.executable, "-m", "torsade", "sweep", str(design), "--out", str(folder), "--json", *more]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=errors, text=True)
 
 
 def until(reached: Callable[[], bool], running: subprocess.Popen[str]) -> bool:
@@ -149,7 +149,7 @@ def verified(design: Path, folder: Path, points: int) -> dict[str, Any]:
 
 @contextmanager
 def dask_cluster() -> Iterator[tuple[str, list[subprocess.Popen[str]]]]:
-    """A dask scheduler and two workers on this machine: its address, and the workers."""
+    """A dask scheduler and two workers on this machine: its address, and the processes in that order."""
     began: list[subprocess.Popen[str]] = []
     with tempfile.TemporaryDirectory() as folder:
         try:
@@ -162,7 +162,7 @@ def dask_cluster() -> Iterator[tuple[str, list[subprocess.Popen[str]]]]:
                 began.append(
                     _dask("worker", address, "--nthreads", "1", "--local-directory", folder, "--no-dashboard")
                 )
-            yield address, began[1:]
+            yield address, began
         finally:
             for process in reversed(began):
                 process.terminate()
@@ -176,12 +176,12 @@ def _dask(*words: str) -> subprocess.Popen[str]:
 
 def on_dask(design: Path, folder: Path, points: int, same: Path) -> dict[str, Any]:
     """The same sweep on dask, where a worker is killed; its numbers beside those of processes."""
-    with dask_cluster() as (address, workers):
+    with dask_cluster() as (address, (_, first, *_)):
         began = time.perf_counter()
         running = begun(design, folder, "--scheduler", address)
         kills = 0
         if until(lambda: stored(folder) > 0.3 * points, running):
-            parents = {workers[0].pid}
+            parents = {first.pid}
             for number, parent, _ in processes():  # the worker itself is a child of its nanny
                 if parent in parents:
                     with suppress(ProcessLookupError):

@@ -1,4 +1,4 @@
-"""Run the sweep of docs/sweeps.md and draw its picture: `python tools/draw_sweep.py`, from the folder above."""
+"""Run the sweep of docs/sweeps.md and draw its picture: `python tools/draw_sweep.py` from above."""
 
 from __future__ import annotations
 

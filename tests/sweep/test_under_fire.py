@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,23 @@ def test_every_point_once_whatever_is_killed(sweeps, capsys):
     assert found["every_point_once"]
     assert found["alike"] == found["checked_alone"] == 20
     assert found["left_behind"] == 0
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_dies_ends_the_sweep_in_one_sentence(sweeps, tmp_path):
+    pytest.importorskip("distributed")
+    design = tmp_path / "a.toml"
+    design.write_text(sweeps.DESIGN.format(duration="0.5 ms", twists=2, seeds=500))
+    with sweeps.dask_cluster() as (address, (scheduler, *_)):
+        running = sweeps.begun(design, tmp_path / "a", "--scheduler", address, errors=subprocess.PIPE)
+        assert sweeps.until(lambda: sweeps.stored(tmp_path / "a") > 0, running)
+        sweeps.kill(scheduler.pid)
+        out, errors = running.communicate()
+    assert (running.returncode, out) == (2, "")
+    assert errors == (
+        "torsade: the scheduler let go of the sweep; the same command goes on with what is left.\n"
+    )
+    assert sweeps.stored(tmp_path / "a") > 0
 
 
 @pytest.mark.slow

@@ -175,7 +175,7 @@ def query(folder: str, sql: str | None, csv: bool, json: bool) -> int:
 
 def _overview(catalogue: Catalogue) -> str:
     """A query for the fields that vary and the numbers that are no lists."""
-    kinds = dict(catalogue.query("DESCRIBE SELECT * FROM runs").rows_of(2))
+    kinds = catalogue.columns()
     numbers = [name for name, kind in kinds.items() if name in _numbers(catalogue, kinds) and "[" not in kind]
     names = ", ".join(f'"{name}"' for name in dict.fromkeys(["point", *catalogue.varied, "status", *numbers]))
     return f"SELECT {names} FROM runs"
@@ -202,7 +202,7 @@ def _describe(catalogue: Catalogue, folder: str, overview: str) -> int:
     from torsade.cli.table import print_rows
 
     counts = catalogue.counts()
-    kinds = dict(catalogue.query("DESCRIBE SELECT * FROM runs").rows_of(2))
+    kinds = catalogue.columns()
     numbers = _numbers(catalogue, kinds)
     lists = [name for name in numbers if "[" in kinds[name]]
     example = (

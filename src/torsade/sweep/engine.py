@@ -190,9 +190,7 @@ def _statuses(con: Any, folder: Path) -> dict[str, str]:
 
 def _note(con: Any, folder: Path, sweep: Sweep, points: Sequence[Point]) -> None:
     """Write down what was asked for."""
-    fixed = {name: None for p in points for name in p.spec.stored()}
-    rows = [{"point": p.number, "key": p.key, **fixed, **p.spec.stored()} for p in points]
-    parts.write_rows(con, rows)
+    parts.write_rows(con, [{"point": p.number, "key": p.key, **p.spec.stored()} for p in points])
     about = {"format": 1, "protocol": sweep.protocol, "varied": list(sweep.varied), "keep": sweep.keep}
     with places.writing(folder):
         for name, write in (
@@ -255,14 +253,15 @@ def _run(
     """Run units; when the first batch was given [s], and how many workers there were and were killed."""
     stop = multiprocessing.get_context("spawn").Event()
     told = _Teller(store, len(units), tell)
+    folder = None if keep is None else str(keep.resolve())
+    lanes: list[Lane] = []
+    work = Work(units, lanes, stored.sources(), folder)
     with Patience(told.stopping) as patience:
-        warm_up(units[0].spec, told.preparing)
-        patience.end()
-        lanes = _lanes(sweep, stop, len(units), **options)
-        began = time.monotonic()
-        folder = None if keep is None else str(keep.resolve())
-        work = Work(units, lanes, stored.sources(), folder)
         try:
+            warm_up(units[0].spec, told.preparing)
+            patience.end()
+            lanes += _lanes(sweep, stop, len(units), **options)
+            began = time.monotonic()
             for outcomes in work.outcomes(patience.end):
                 store.take(outcomes)
                 told.now(work.killed, sum(lane.workers for lane in lanes))

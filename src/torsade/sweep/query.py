@@ -40,10 +40,6 @@ class Rows(NamedTuple):
     types: tuple[str, ...]
     rows: list[tuple[Any, ...]]
 
-    def rows_of(self, width: int) -> list[tuple[Any, ...]]:
-        """The first columns only."""
-        return [row[:width] for row in self.rows]
-
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Columns as arrays, shape (n_rows,), by name; numbers that are not known are nan."""
         import numpy as np
@@ -119,6 +115,10 @@ class Catalogue:
                     raise
                 # Otherwise the sweep, which goes on, has merged them into another.
         raise TorsadeError(f"{str(self.folder)!r} changes too fast to be read; ask again")
+
+    def columns(self) -> dict[str, str]:
+        """The columns of `runs` and their types, as SQL calls them."""
+        return {row[0]: row[1] for row in self.query("DESCRIBE runs").rows}
 
     def counts(self) -> dict[str, int]:
         """How many points are done, failed and waiting."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -77,12 +78,18 @@ def connected(scheduler: str, workers: int | None, options: Mapping[str, Any]) -
             cluster.close()
         raise
 
+    def count() -> int:
+        try:
+            return len(client.nthreads())
+        except OSError:  # the scheduler is away; whether it comes back, its futures will say
+            return 0
+
     def release() -> None:
         client.close()
         if cluster is not None:
             cluster.close()
 
-    return Shared(client.get_executor(pure=False), lambda: len(client.nthreads()), release)
+    return Shared(client.get_executor(pure=False), count, release)
 
 
 def _client(where: Any) -> Any:
@@ -92,6 +99,8 @@ def _client(where: Any) -> Any:
         raise TorsadeError(
             f"--scheduler needs dask, which is not installed; install it with {INSTALL}"
         ) from None
+    # Its tracebacks say less than the one sentence that follows.
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
     make: Callable[..., Any] = Client
     try:
         return make(where, timeout=PATIENCE, set_as_default=False)
