@@ -174,32 +174,30 @@ def _dask(*words: str) -> subprocess.Popen[str]:
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True)
 
 
-def on_dask(design: Path, folder: Path, points: int, same: Path) -> dict[str, Any]:
-    """The same sweep on dask, where a worker is killed; its numbers beside those of processes."""
+def on_dask(design: Path, folder: Path, points: int) -> dict[str, Any]:
+    """A sweep on dask, where a worker is killed."""
     with dask_cluster() as (address, (_, first, *_)):
         began = time.perf_counter()
         running = begun(design, folder, "--scheduler", address)
         kills = 0
         if until(lambda: stored(folder) > 0.3 * points, running):
-            parents = {first.pid}
-            for number, parent, _ in processes():  # the worker itself is a child of its nanny
-                if parent in parents:
-                    with suppress(ProcessLookupError):
-                        kill(number)
+            for number, parent, _ in processes():
+                if parent == first.pid:  # which only looks after the worker itself, and starts another
+                    kill(number)
             kills = 1
         out, _ = running.communicate()
         wall = time.perf_counter() - began
     if running.returncode:
         raise RuntimeError(f"the sweep on dask failed: {out}")
-    sql = "SELECT * EXCLUDE (wall_s) FROM runs"
-    alike = Catalogue(folder).query(sql).rows == Catalogue(same).query(sql).rows
-    return {
-        "worker_kills": kills,
-        "command_kills": 0,
-        "wall_s": wall,
-        "same_as_processes": alike,
-        **verified(design, folder, points),
-    }
+    return {"worker_kills": kills, "command_kills": 0, "wall_s": wall, **verified(design, folder, points)}
+
+
+def alike(one: Path, other: Path) -> dict[str, int]:
+    """How many points two sweeps share, and of how many everything but times is the same to the last bit."""
+    sql = "SELECT key, * EXCLUDE (key, point, wall_s) FROM runs WHERE status = 'done'"
+    mine, theirs = ({row[0]: row[1:] for row in Catalogue(folder).query(sql).rows} for folder in (one, other))
+    shared = mine.keys() & theirs.keys()
+    return {"shared": len(shared), "the_same": sum(mine[key] == theirs[key] for key in shared)}
 
 
 def overhead(folder: Path, duration: str, count: int) -> dict[str, Any]:
@@ -252,7 +250,11 @@ def kills_text(found: dict[str, Any]) -> str:
         "in all [s]",
         "a query [ms]",
     )
-    return common.table(heads, rows)
+    text = common.table(heads, rows)
+    if both := found.get("both"):
+        shared, same = f"{both['shared']:,}", f"{both['the_same']:,}"
+        text += f"\n\nOf {shared} points that both ran, {same} have the same numbers to the last bit."
+    return text
 
 
 def overhead_text(found: Sequence[dict[str, Any]]) -> str:
@@ -271,15 +273,15 @@ def overhead_text(found: Sequence[dict[str, Any]]) -> str:
 
 
 def measured(part: str, folder: Path, points: int, quick: bool) -> Any:
-    """One part of what is to be found; the one on dask takes what processes found in the same folder."""
+    """One part of what is to be found."""
     if part == "overhead":
-        return [overhead(folder / "long", "250 ms", 200), overhead(folder / "short", "0.5 ms", 2000)]
-    design = folder / "pieces.toml"
+        return [overhead(folder / "long", "50 ms", 150), overhead(folder / "short", "0.5 ms", 1000)]
+    design = folder / f"{part}.toml"
     duration = "100 ms" if quick else "0.5 ms"
     design.write_text(DESIGN.format(duration=duration, twists=TWISTS, seeds=points // TWISTS))
     points = len(Sweep.read(design))
     if part == "dask":
-        return on_dask(design, folder / "dask", points, folder / "processes")
+        return on_dask(design, folder / "dask", points)
     return under_fire(design, folder / "processes", points)
 
 
@@ -296,9 +298,12 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
         folder = Path(given.out or place)
         folder.mkdir(exist_ok=True)
         kept = folder / "found.json"
-        found: dict[str, Any] = json.loads(kept.read_text()) if kept.exists() else {}
+        found: dict[str, Any] = {}
         for part in parts:
-            found[part] = measured(part, folder, points, given.quick)
+            one = measured(part, folder, points, given.quick)
+            found = (json.loads(kept.read_text()) if kept.exists() else {}) | {part: one}
+            if "dask" in found and "processes" in found:
+                found["both"] = alike(folder / "dask", folder / "processes")
             kept.write_text(json.dumps(found))
     tables = {"kills": kills_text(found), "overhead": overhead_text(found.get("overhead", []))}
     if not (given.quick or given.no_write):

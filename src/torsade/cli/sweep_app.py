@@ -74,8 +74,9 @@ def _sweep(
 ) -> int:
     """Run a protocol at many points: every combination of the fields that vary, each once.
 
-    What is stored in the folder is not run again: a sweep that was stopped goes on, and one with points added
-    runs the new ones. A point that fails is stored with its reason, and the others go on.
+    What is stored is not run again: a sweep that was stopped goes on, and points that are added are run.
+
+    A point that fails is stored with its reason, and the others go on.
     """
     from torsade.cli.sweep import sweep
 
@@ -103,7 +104,7 @@ def _query(
     csv: Annotated[bool, Parameter(help="Print CSV, every row.")] = False,
     json: Annotated[bool, Parameter(help=_JSON)] = False,
 ) -> int:
-    """Ask a sweep in SQL. The table runs has a row for every point: fields, status, numbers.
+    """Ask a sweep in SQL: its table runs has a row for every point, with fields, status and numbers.
 
     Values are in SI units. A sweep can be asked while it goes on.
     """
