@@ -55,7 +55,7 @@ def main() -> None:
                 label=f"disorder {level:g}",
             )
         ax.set_xlabel("twist (degrees)")
-        ax.set_ylabel("pieces, mean of 20 rods")
+        ax.set_ylabel("pieces, mean and its error")
         ax.set_xticks(range(0, 301, 60))
         ax.set_ylim(1.7, 6.3)
         ax.legend(frameon=False, loc="lower left")
