@@ -41,7 +41,7 @@ seed = {{ from = 1, to = {seeds} }}
 PARTS = ("processes", "dask", "overhead")
 TWISTS = 10
 WORKERS = 2
-LOOK_EVERY = 0.3  # [s]
+LOOK_EVERY = 1.0  # [s]
 CHECKED = 20
 """Points that are run once more, alone, and compared to the last bit."""
 

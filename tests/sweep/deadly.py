@@ -28,3 +28,9 @@ def batch(units, sources, folder):
         time.sleep(0.002)
         done.append(Outcome(unit.key, "done", None, {}, 0.002, {}))
     return done
+
+
+def dawdle(units, folder):
+    """Take a minute, without looking up."""
+    _log(folder, "begun")
+    time.sleep(60)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections import Counter
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, ThreadPoolExecutor
 
 import deadly
 import pytest
@@ -81,3 +82,16 @@ def test_workers_that_all_die_end_the_sweep(run, monkeypatch):
     monkeypatch.setattr(work, "MOST_IN_VAIN", 3)
     with pytest.raises(TorsadeError, match="4 workers died one after another and nothing got done"):
         run([f"kill-{90 + k}" for k in range(5)], [Local(None)])
+
+
+def test_what_does_not_heed_ctrl_c_can_be_ended(tmp_path):
+    """A run that takes a minute, in a process that ignores Ctrl-C."""
+    lane = Local(None)
+    lane.submit([Unit("a", None)], deadly.dawdle, str(tmp_path))
+    (future, _) = lane.given[0]
+    while not (tmp_path / "log").exists():
+        time.sleep(0.02)
+    lane.abandon()
+    with pytest.raises(BrokenExecutor):
+        future.result(timeout=30)
+    lane.close()

@@ -9,6 +9,7 @@ import shutil
 import time
 from collections.abc import Sequence
 from concurrent.futures import Executor
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -268,7 +269,10 @@ def _run(
             return began, sum(lane.workers for lane in lanes), work.killed
         except KeyboardInterrupt:
             stop.set()
-            store.take(work.remaining(GRACE))
+            with suppress(KeyboardInterrupt):  # a second Ctrl-C does not wait
+                store.take(work.remaining(GRACE))
+            for lane in lanes:
+                lane.abandon()
             store.flush()
             raise KeyboardInterrupt(_interrupted(store)) from None
         except BaseException:

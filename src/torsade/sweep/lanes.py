@@ -132,6 +132,9 @@ class Lane:
         """Begin anew after its worker was killed; False where that is not in our hands."""
         return False
 
+    def abandon(self) -> None:
+        """End what runs, if it is in our hands."""
+
     def close(self) -> None:
         """Let what it holds go."""
 
@@ -151,6 +154,11 @@ class Local(Lane):
         self._pool.shutdown(wait=False)
         self._pool = pool(1, self._stop)
         return True
+
+    def abandon(self) -> None:
+        # Before Python 3.14 there is no public way.
+        for process in list((getattr(self._pool, "_processes", None) or {}).values()):
+            process.kill()
 
     def close(self) -> None:
         self._pool.shutdown(wait=False, cancel_futures=True)

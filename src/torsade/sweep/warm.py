@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable
 from contextlib import suppress
 from typing import TYPE_CHECKING
@@ -29,7 +30,9 @@ def warm_up(spec: Spec, tell: Callable[[str], None]) -> None:
     if _compile.CACHE is None:
         tell(preparation())
         return
-    mark = _compile.CACHE / f"compiled-{spec.protocol}"
+    # Compiled code is kept apart for every copy of the package.
+    place = hashlib.sha256(str(_compile.PACKAGE).encode()).hexdigest()[:8]
+    mark = _compile.CACHE / f"compiled-{spec.protocol}-{place}"
     if mark.exists():
         return
     tell(preparation())

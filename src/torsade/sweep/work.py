@@ -85,6 +85,8 @@ class Work:
                     lane.submit(batch, run_batch, *self._arguments)
                 except BrokenExecutor:
                     self._waiting.extendleft(reversed(batch))
+                    if lane.given:
+                        break  # what became of the first of these says so too
                     self._mourn(lane)
 
     def _batch(self) -> list[Unit]:
