@@ -102,6 +102,12 @@ COMMANDS = MappingProxyType(
             "nothing is given; give the folder of a sweep, such as pieces",
             "{} comes after the query; put the whole query in one pair of quotes",
         ),
+        "movie": _Command(
+            ("--out", "--seconds", "--fps", "--size", "--frames", "--colour"),
+            ("--whole", "--json"),
+            "nothing is given; give the result of a run, such as snap.zarr",
+            "{} comes after the result; give one result at a time, such as torsade movie snap.zarr",
+        ),
         "knots list": _Command(("--kind",), ("--json",), "", _QUOTE),
         "knots show": _Command((), ("--json",), "nothing is given; give a name such as reef or 5_1", _QUOTE),
         "knots build": _Command(
