@@ -208,14 +208,16 @@ def overhead(folder: Path, duration: str, count: int) -> dict[str, Any]:
         grid={"seed": {"from": 1, "to": count}},
     )
     done = run(sweep, folder, workers=WORKERS)
+    workers, _, wall, start = done.effort
     walls = [row[0] for row in done.catalogue.query("SELECT wall_s FROM runs").rows]
     return {
         "points": count,
         "unit_s": statistics.median(walls),
-        "workers": done.workers,
-        "wall_s": done.wall_s,
+        "wall_s": wall,
+        "start_s": start,
         "compute_s": done.compute_s,
-        "overhead": done.wall_s * done.workers / done.compute_s - 1,
+        "overhead": wall * workers / done.compute_s - 1,
+        "overhead_once_started": (wall - start) * workers / done.compute_s - 1,
     }
 
 
@@ -263,12 +265,22 @@ def overhead_text(found: Sequence[dict[str, Any]]) -> str:
             one["points"],
             f"{one['unit_s']:.2g}",
             f"{one['wall_s']:.1f}",
+            f"{one['start_s']:.1f}",
             f"{one['compute_s']:.1f}",
             f"{100 * one['overhead']:.1f} %",
+            f"{100 * one['overhead_once_started']:.1f} %",
         )
         for one in found
     ]
-    heads = ("points", "median of a run [s]", "wall [s]", "sum of runs [s]", "beside computing")
+    heads = (
+        "points",
+        "median of a run [s]",
+        "wall [s]",
+        "start [s]",
+        "sum of runs [s]",
+        "in all",
+        "once started",
+    )
     return common.table(heads, rows)
 
 

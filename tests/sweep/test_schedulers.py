@@ -38,7 +38,7 @@ def numbers(folder):
 def test_a_scheduler_gives_the_numbers_of_processes(cluster, tmp_path):
     sweep = Sweep("snap-twist", **BREAKING)
     done = run(sweep, tmp_path / "a", scheduler=cluster.scheduler_address)
-    assert (done.ran, done.workers) == (12, 2)
+    assert (done.ran, done.effort.workers) == (12, 2)
     run(sweep, tmp_path / "b", workers=1)
     assert numbers(tmp_path / "a") == numbers(tmp_path / "b")
 

@@ -121,9 +121,10 @@ def _print(done: Summary, folder: Path, json: bool) -> None:
             "ran": done.ran,
             "done": counts["done"],
             "failed": done.failed,
-            "killed_workers": done.killed,
-            "workers": done.workers,
-            "wall_s": done.wall_s,
+            "killed_workers": done.effort.killed,
+            "workers": done.effort.workers,
+            "wall_s": done.effort.wall_s,
+            "start_s": done.effort.start_s,
             "compute_s": done.compute_s,
         }
         print(json_format.dumps(found, allow_nan=False), flush=True)
@@ -138,15 +139,13 @@ def _told(done: Summary, counts: dict[str, int]) -> Iterator[tuple[str, str]]:
     yield "protocol", done.catalogue.protocol
     yield "points", f"{done.points}: {counts['done']} done, {done.failed} failed"
     yield "run now", f"{done.ran}; {done.before} were stored before"
-    if done.killed:
-        yield "workers killed", str(done.killed)
+    workers, killed, wall, start = done.effort
+    if killed:
+        yield "workers killed", str(killed)
     if done.ran and done.compute_s > 0:
-        beyond = max(0.0, done.wall_s * done.workers / done.compute_s - 1)
-        yield (
-            "computing",
-            f"{done.compute_s:.1f} s by {counted(done.workers, 'worker')} in {done.wall_s:.1f} s",
-        )
-        yield "beside computing", f"{100 * beyond:.1f} %"
+        beyond = max(0.0, (wall - start) * workers / done.compute_s - 1)
+        yield "computing", f"{done.compute_s:.1f} s by {counted(workers, 'worker')} in {wall:.1f} s"
+        yield "beside computing", f"{start:.1f} s to start, then {100 * beyond:.1f} %"
 
 
 def query(folder: str, sql: str | None, csv: bool, json: bool) -> int:

@@ -15,15 +15,16 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from torsade.sweep.design import MOST_POINTS, Point, Sweep
-    from torsade.sweep.engine import Summary, run
+    from torsade.sweep.engine import Effort, Summary, run
     from torsade.sweep.query import Catalogue, Rows
 
-__all__ = ["MOST_POINTS", "Catalogue", "Point", "Rows", "Summary", "Sweep", "run"]
+__all__ = ["MOST_POINTS", "Catalogue", "Effort", "Point", "Rows", "Summary", "Sweep", "run"]
 
 # Workers import this package for the sake of one module.
 _HOMES = {
     "MOST_POINTS": "design",
     "Catalogue": "query",
+    "Effort": "engine",
     "Point": "design",
     "Rows": "query",
     "Summary": "engine",

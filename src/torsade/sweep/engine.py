@@ -48,6 +48,23 @@ _LEFT_BEHIND = re.compile(r"part\.[0-9a-f]{12}\.new|[0-9a-f]{16}\.[0-9a-f]{12}\.
 """Names of what was being written when a process was killed."""
 
 
+class Effort(NamedTuple):
+    """What running took.
+
+    Attributes
+    ----------
+    workers : at a time
+    killed : of these
+    wall_s : from the first batch that was given to the last that came back [s]
+    start_s : of that, until the first worker was at work [s]
+    """
+
+    workers: int
+    killed: int
+    wall_s: float
+    start_s: float
+
+
 class Summary(NamedTuple):
     """What a sweep did.
 
@@ -58,10 +75,8 @@ class Summary(NamedTuple):
     before : points that were stored already, failures that are left among them
     ran : points that were run now
     failed : of all points
-    killed : workers that were killed
-    workers : at a time
-    wall_s : from the first batch to the last [s]
     compute_s : sum of what units took, as their workers saw it [s]
+    effort : what that took here
     """
 
     catalogue: Catalogue
@@ -69,10 +84,8 @@ class Summary(NamedTuple):
     before: int
     ran: int
     failed: int
-    killed: int
-    workers: int
-    wall_s: float
     compute_s: float
+    effort: Effort
 
 
 def run(
@@ -127,10 +140,7 @@ def run(
         units = [Unit(p.key, p.spec) for p in points if p.key not in known]
         store = _Store(con, folder, {p.key: p for p in points}, len(there))
         options = {"workers": workers, "scheduler": scheduler, "executor": executor}
-        began, used, killed = time.monotonic(), 0, 0
-        if units:
-            began, used, killed = _run(sweep, units, store, keep, options, tell)
-        wall = time.monotonic() - began if units else 0.0
+        effort = _run(sweep, units, store, keep, options, tell) if units else Effort(0, 0, 0.0, 0.0)
         store.flush()
         parts.merge_all(con, folder)
     finally:
@@ -143,10 +153,8 @@ def run(
         len(there),
         store.ran,
         store.failed + old,
-        killed,
-        used,
-        wall,
         store.compute,
+        effort,
     )
 
 
@@ -250,8 +258,8 @@ def _run(
     keep: Path | None,
     options: dict[str, Any],
     tell: Progress,
-) -> tuple[float, int, int]:
-    """Run units; when the first batch was given [s], and how many workers there were and were killed."""
+) -> Effort:
+    """Run units."""
     stop = multiprocessing.get_context("spawn").Event()
     told = _Teller(store, len(units), tell)
     folder = None if keep is None else str(keep.resolve())
@@ -262,11 +270,14 @@ def _run(
             warm_up(units[0].spec, told.preparing)
             patience.end()
             lanes += _lanes(sweep, stop, len(units), **options)
-            began = time.monotonic()
+            began, start = time.monotonic(), None
             for outcomes in work.outcomes(patience.end):
+                if outcomes and start is None:
+                    start = max(0.0, time.monotonic() - began - outcomes[0].wall)
                 store.take(outcomes)
                 told.now(work.killed, sum(lane.workers for lane in lanes))
-            return began, sum(lane.workers for lane in lanes), work.killed
+            used, wall = sum(lane.workers for lane in lanes), time.monotonic() - began
+            return Effort(used, work.killed, wall, start or 0.0)
         except KeyboardInterrupt:
             stop.set()
             with suppress(KeyboardInterrupt):  # a second Ctrl-C does not wait
