@@ -1,12 +1,14 @@
-"""Tasks in place of runs, for workers that are killed; importable by them."""
+"""Tasks in place of runs, for workers that are killed or looked at; importable by them."""
 
 from __future__ import annotations
 
 import os
 import signal
+import sys
 import time
 from pathlib import Path
 
+from torsade.sweep.lanes import ONE_THREAD
 from torsade.sweep.unit import OTHER_VERSION, Outcome
 
 
@@ -34,3 +36,12 @@ def dawdle(units, folder):
     """Take a minute, without looking up."""
     _log(folder, "begun")
     time.sleep(60)
+
+
+def inherited():
+    """What a worker finds itself with."""
+    heavy = ("numba", "numpy", "xarray", "pydantic", "duckdb", "torsade.protocols.files")
+    return {
+        "threads": [os.environ.get(name) for name in ONE_THREAD],
+        "heavy": [name for name in heavy if name in sys.modules],
+    }
