@@ -101,7 +101,7 @@ def under_fire(design: Path, folder: Path, points: int) -> dict[str, Any]:
             worker_kills += 1
         if share is not None and until(lambda aim=aim: stored(folder) >= aim, running):  # type: ignore[misc]
             kill(running.pid)
-            running.wait()
+            running.communicate()
             seen.append(stored(folder))
             if seen[-1] < before:
                 raise RuntimeError("points that were stored have gone")
