@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from torsade.errors import TorsadeError
     from torsade.files import read_centerline, read_csv, write_centerline, write_csv
     from torsade.material import MATERIALS, Material, Section, named_material
-    from torsade.results import Result
+    from torsade.results import Result, open_result
     from torsade.results import open_result as open
     from torsade.sweep import Sweep
 
@@ -36,6 +36,7 @@ __all__ = [
     "knots",
     "named_material",
     "open",
+    "open_result",
     "protocols",
     "read_centerline",
     "read_csv",
@@ -58,6 +59,7 @@ _HOMES = {
     "Sweep": "torsade.sweep",
     "TorsadeError": "torsade.errors",
     "named_material": "torsade.material",
+    "open_result": "torsade.results",
     "read_centerline": "torsade.files",
     "read_csv": "torsade.files",
     "write_centerline": "torsade.files",

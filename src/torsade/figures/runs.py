@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
 import re
 import signal
 from collections.abc import Iterator, Mapping
-from concurrent.futures import as_completed
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from torsade import places
+from torsade import places, stopping
 from torsade.errors import TorsadeError, counted, reason_of
 from torsade.protocols import stored
 from torsade.results import Result
-from torsade.sweep import lanes
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Progress, Spec
@@ -91,7 +92,7 @@ def _run_missing(
     """Run what is not stored, telling what share of all is."""
     done = len(paths) - len(missing)
     tell(done / len(paths), _note(len(missing)))
-    for label in _run_all(missing, paths, fresh, workers or lanes.cores()):
+    for label in _run_all(missing, paths, fresh, workers or os.cpu_count() or 1):
         done += 1
         tell(done / len(paths), label)
 
@@ -169,22 +170,46 @@ def _outcomes(
             for label, one in job.items():
                 yield _run({label: one}, fresh)
         return
-    with lanes.pool(min(workers, len(jobs))) as pool:
+    # Fresh interpreters: forking one that has threads, as compiled kernels do, can hang.
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(min(workers, len(jobs)), context, initializer=_wait) as pool:
         waiting = [pool.submit(_run_apart, job, fresh) for job in jobs]
         try:
             for future in as_completed(waiting):
                 yield future.result()
+        except KeyboardInterrupt:
+            if stopping.by_sigterm():  # unlike Ctrl-C, it may have come to this process alone
+                for worker in multiprocessing.active_children():
+                    worker.terminate()
+            raise
         finally:
             pool.shutdown(cancel_futures=True)
 
 
+def _wait() -> None:
+    """Leave Ctrl-C and SIGTERM to whoever waits for this process, while it has nothing to do."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _leave)
+
+
+def _leave(number: int, frame: object) -> None:
+    """Begin nothing more, and end a process that nobody waits for any more."""
+    stopping.heard(number)
+    waiting = multiprocessing.parent_process()
+    if waiting is None or not waiting.is_alive():
+        os._exit(128 + number)
+
+
 def _run_apart(job: Mapping[str, tuple[Spec, Path]], fresh: bool) -> dict[str, str | None]:
-    """Runs in a process of their own, which Ctrl-C stops."""
+    """Runs in a process of their own, which Ctrl-C and SIGTERM stop."""
+    if stopping.by_sigterm():
+        raise KeyboardInterrupt
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGTERM, stopping.stop)
     try:
         return _run(job, fresh)
     finally:
-        lanes.deaf()
+        _wait()
 
 
 def _run(job: Mapping[str, tuple[Spec, Path]], fresh: bool) -> dict[str, str | None]:

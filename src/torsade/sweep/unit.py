@@ -136,7 +136,7 @@ def _reported(unit: Unit, folder: str | None, progress: Progress) -> dict[str, A
 @lru_cache(maxsize=1)
 def _versions() -> dict[str, str]:
     from torsade.protocols import driving  # noqa: F401
-    from torsade.recording import versions
+    from torsade.provenance import versions
 
     return versions()
 
