@@ -6,6 +6,7 @@ import hashlib
 import importlib
 import mmap
 import os
+import re
 import resource
 import shutil
 import struct
@@ -73,6 +74,8 @@ class Round:
 def _where(error: BaseException) -> str:
     """From where in the package it was raised: the same for inputs that find the same."""
     ours = [f for f in traceback.extract_tb(error.__traceback__) if "/torsade/" in f.filename]
+    if isinstance(error, Finding):  # from the shell: what it says tells where
+        return re.sub(r"'.*?'|\W|\d", "", str(error))[:60]
     return "".join(f"{f.filename.partition('/torsade/')[2]}:{f.lineno} in {f.name}" for f in ours[-1:])
 
 

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from torsade import curve
 from torsade.centerline import Centerline
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted
 from torsade.knots.drawing import SPACING, SPACING_RANGE, in_radii, known_radius
 from torsade.knots.placing import placed
 from torsade.knots.reading import reads_as
@@ -126,7 +126,7 @@ def _known_pull(diagram: Diagram, pulled: str | None) -> str | None:
     if not usable or not fits:
         has = f"ends {' '.join(diagram.ends)}" if diagram.ends else "no ends"
         raise TorsadeError(
-            f"pulled ends are {pulled!r} of a diagram with {has}; give the clamped, then the pulled end, "
+            f"pulled ends are {quoted(pulled)} of a diagram with {has}; give the clamped, then the pulled end, "
             'one of each of two open strands, such as "A1B1", or both of one'
         )
     return "".join(names)

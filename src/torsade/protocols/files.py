@@ -13,7 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from torsade.errors import TorsadeError, reason_of
+from torsade.errors import TorsadeError, quoted, reason_of
 from torsade.protocols.base import Spec
 from torsade.protocols.bend_twist import BendTwist
 from torsade.protocols.pendulum import Pendulum
@@ -71,6 +71,8 @@ def read_fields(path: str | Path) -> dict[str, Any]:
         fields = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         raise TorsadeError(f"there is no file {name}; give the path of a TOML specification") from None
+    except RecursionError:
+        raise TorsadeError(f"{name} has brackets too deep within each other; give a TOML specification") from None
     except (OSError, ValueError) as error:
         if isinstance(error, tomllib.TOMLDecodeError):
             reason = str(error).rstrip(".")
@@ -87,7 +89,7 @@ def read_fields(path: str | Path) -> dict[str, Any]:
         near = difflib.get_close_matches(str(protocol), PROTOCOLS, n=1)
         hint = f"did you mean {near[0]!r}? " if near else ""
         raise TorsadeError(
-            f"{name} has protocol {protocol!r}, which is unknown; {hint}choose one of {', '.join(PROTOCOLS)}"
+            f"{name} has protocol {quoted(protocol)}, which is unknown; {hint}choose one of {', '.join(PROTOCOLS)}"
         )
     centerline = fields.get("centerline")
     if isinstance(centerline, str) and (path.parent / centerline).is_file():
