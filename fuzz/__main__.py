@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import signal
 import subprocess
@@ -29,6 +30,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m fuzz", description=__doc__)
     parser.add_argument("target", choices=[*TARGETS, "table"])
     parser.add_argument("--seconds", type=float, default=600, help="of the child's own processor time")
+    parser.add_argument("--wall", type=float, default=math.inf, help="stop after so many seconds of time")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--out", type=Path, default=Path("fuzzed"), help="folder for corpus, findings and numbers")
     parser.add_argument("--replay", action="store_true", help="try the findings again")
@@ -39,16 +41,17 @@ def main() -> None:
     elif options.replay:
         replay(options.target, options.out / options.target)
     else:
-        fuzz(options.target, options.out / options.target, options.seconds, options.seed)
+        fuzz(options.target, options.out / options.target, options.seconds, options.wall, options.seed)
 
 
-def fuzz(target: str, folder: Path, seconds: float, seed: int) -> None:
+def fuzz(target: str, folder: Path, seconds: float, wall: float, seed: int) -> None:
     """Keep a child at work until so much processor time is used; one that comes to harm is followed by another."""
     (folder / "corpus").mkdir(parents=True, exist_ok=True)
     state = folder / "state"
     state.write_bytes(bytes(STATE.size + LONGEST))
     used = most = slowest = 0.0
-    while used < seconds:
+    until = time.monotonic() + wall
+    while used < seconds and time.monotonic() < until:
         command = [sys.executable, "-m", "fuzz.child", target, str(folder), str(seconds - used), str(seed)]
         with (folder / "log").open("wb") as log:
             child = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT)
@@ -59,7 +62,9 @@ def fuzz(target: str, folder: Path, seconds: float, seed: int) -> None:
             _, began, ended, _ = STATE.unpack_from(state.read_bytes())
             slowest = max(slowest, ended - began, spent - began if not ended else 0)
             most = max(most, memory)
-            if memory > MEMORY:
+            if time.monotonic() > until:
+                harm = "no time"
+            elif memory > MEMORY:
                 harm = "memory"
             elif began and not ended and spent - began > SLOWEST:
                 harm = "hang"
@@ -67,7 +72,7 @@ def fuzz(target: str, folder: Path, seconds: float, seed: int) -> None:
             child.send_signal(signal.SIGKILL)
         code = child.wait()
         inputs, *_, length = STATE.unpack_from(state.read_bytes())
-        if harm or code:
+        if harm != "no time" and (harm or code):
             harm = harm or {3: "memory"}.get(code, "death")
             data = state.read_bytes()[STATE.size : STATE.size + length]
             last = "" if harm != "death" else (folder / "log").read_text(errors="replace")[-2000:]

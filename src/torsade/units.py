@@ -42,6 +42,7 @@ __all__ = [
     "Velocity",
     "Viscosity",
     "bearable",
+    "is_bearable",
     "metres",
     "quantity",
 ]
@@ -185,14 +186,19 @@ def quantity(value: str | float, dimension: str) -> float:
     return result
 
 
+def is_bearable(value: float) -> bool:
+    """Whether the size of a number in SI units is 0 or between `LEAST` and `GREATEST`."""
+    return value == 0 or LEAST <= abs(value) <= GREATEST
+
+
 def bearable(value: str | float, dimension: str) -> float:
-    """Return `value` in SI units, as `quantity` reads it, where its size is 0 or between `LEAST` and `GREATEST`.
+    """Return `value` in SI units, as `quantity` reads it, if it is bearable.
 
     Raises:
         TorsadeError: as `quantity`; or it is so large or small that numbers made of it overflow.
     """
     result = quantity(value, dimension)
-    if result and not LEAST <= abs(result) <= GREATEST:
+    if not is_bearable(result):
         unit = DIMENSIONS[dimension].unit
         between = f"between {LEAST:g} and {GREATEST:g} {unit}".rstrip()
         raise QuantityError(f"{quoted(value)} is beyond what can be computed with; give a size {between}")
