@@ -32,7 +32,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=600, help="of the child's own processor time")
     parser.add_argument("--wall", type=float, default=math.inf, help="stop after so many seconds of time")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--out", type=Path, default=Path("fuzzed"), help="folder for corpus, findings and numbers")
+    parser.add_argument("--out", type=Path, default=Path("fuzzed"), help="folder for what is found")
     parser.add_argument("--replay", action="store_true", help="try the findings again")
     parser.add_argument("--page", type=Path, default=Path("docs/hardening.md"), help="where the table goes")
     options = parser.parse_args()
@@ -45,7 +45,7 @@ def main() -> None:
 
 
 def fuzz(target: str, folder: Path, seconds: float, wall: float, seed: int) -> None:
-    """Keep a child at work until so much processor time is used; one that comes to harm is followed by another."""
+    """Keep a child at work until the time is used; one that comes to harm is followed by another."""
     (folder / "corpus").mkdir(parents=True, exist_ok=True)
     state = folder / "state"
     state.write_bytes(bytes(STATE.size + LONGEST))
@@ -75,11 +75,13 @@ def fuzz(target: str, folder: Path, seconds: float, wall: float, seed: int) -> N
         if harm != "no time" and (harm or code):
             harm = harm or {3: "memory"}.get(code, "death")
             data = state.read_bytes()[STATE.size : STATE.size + length]
-            last = "" if harm != "death" else (folder / "log").read_text(errors="replace")[-2000:]
-            keep(folder, data, harm, str(data), f"{harm} after {spent:.1f} s, {memory / 2**20:.0f} MB, exit code {code}\n{last}")
+            last = (folder / "log").read_text(errors="replace")[-2000:] if harm == "death" else ""
+            reason = f"{harm} after {spent:.1f} s, {memory / 2**20:.0f} MB, exit code {code}\n{last}"
+            keep(folder, data, harm, str(data), reason)
         used, seed = used + spent, seed + 1
         kept = sorted(folder.glob("*.input"))
-        numbers = {"inputs": inputs, "seconds": used, "findings": len(kept), "most_mb": most / 2**20, "slowest_s": slowest}
+        numbers = {"inputs": inputs, "seconds": used, "findings": len(kept), "most_mb": most / 2**20}
+        numbers["slowest_s"] = slowest
         (folder / "numbers.json").write_text(json.dumps(numbers))
     print(target, json.dumps(numbers))
     for path in kept:
@@ -114,14 +116,15 @@ def replay(target: str, folder: Path) -> None:
 
 def write_table(folder: Path, page: Path) -> None:
     """Put the numbers of all targets between the marks of a page."""
-    rows = ["| target | inputs | processor time [s] | findings | slowest [s] | most memory [MB] |", "| --- | --- | --- | --- | --- | --- |"]
+    heads = ("target", "inputs", "processor time [s]", "findings", "slowest [s]", "most memory [MB]")
+    rows = [" | ".join(("", *heads, "")).strip(), "| --- | --- | --- | --- | --- | --- |"]
     for target in TARGETS:
         path = folder / target / "numbers.json"
         if path.exists():
             n = json.loads(path.read_text())
-            rows.append(
-                f"| `{target}` | {n['inputs']} | {n['seconds']:.0f} | {n['findings']} | {n['slowest_s']:.1f} | {n['most_mb']:.0f} |"
-            )
+            cells = (f"`{target}`", n["inputs"], f"{n['seconds']:.0f}", n["findings"])
+            cells += (f"{n['slowest_s']:.1f}", f"{n['most_mb']:.0f}")
+            rows.append(f"| {' | '.join(map(str, cells))} |")
     begin, end = "<!-- table -->\n", "<!-- end of table -->"
     before, _, rest = page.read_text(encoding="utf-8").partition(begin)
     page.write_text(before + begin + "\n".join(rows) + "\n" + end + rest.partition(end)[2], encoding="utf-8")

@@ -20,7 +20,7 @@ from random import Random
 
 from fuzz import samples
 from fuzz.mutate import LONGEST, mutated
-from fuzz.targets import TARGETS, Finding, Target, tried
+from fuzz.targets import TARGETS, HarmError, Target, tried
 
 __all__ = ["MEMORY", "STATE", "Round", "keep"]
 
@@ -32,7 +32,7 @@ STATE = struct.Struct("QddQ")
 
 
 def keep(folder: Path, data: bytes, kind: str, where: str, reason: str) -> None:
-    """Write an input that did harm, and the reason; of those of one kind from one place the shortest stays."""
+    """Write an input that did harm, and why; of those of one kind from one place the shortest stays."""
     name = folder / f"{kind}-{hashlib.sha256(where.encode()).hexdigest()[:10]}"
     old = name.with_suffix(".input")
     if not old.exists() or old.stat().st_size > len(data):
@@ -74,7 +74,7 @@ class Round:
 def _where(error: BaseException) -> str:
     """From where in the package it was raised: the same for inputs that find the same."""
     ours = [f for f in traceback.extract_tb(error.__traceback__) if "/torsade/" in f.filename]
-    if isinstance(error, Finding):  # from the shell: what it says tells where
+    if isinstance(error, HarmError):  # from the shell: what it says tells where
         return re.sub(r"'.*?'|\W|\d", "", str(error))[:60]
     return "".join(f"{f.filename.partition('/torsade/')[2]}:{f.lineno} in {f.name}" for f in ours[-1:])
 
@@ -104,8 +104,8 @@ def main(name: str, folder: str, seconds: str, seed: str) -> None:
         rng = Random(seed)
         return atheris.Mutate(data, most) if rng.random() < 0.2 else mutated(data, words, rng)[:most]
 
-    options = [f"-seed={seed}", f"-max_len={LONGEST}", "-len_control=0", "-rss_limit_mb=0", "-timeout=1000000"]
-    options.append(f"-artifact_prefix={folder}/")
+    options = [f"-seed={seed}", f"-max_len={LONGEST}", "-len_control=0", f"-artifact_prefix={folder}/"]
+    options += ["-rss_limit_mb=0", "-timeout=1000000"]  # the parent looks after both
     atheris.Setup([name, *options, str(corpus)], round_, custom_mutator=change)
     atheris.Fuzz()
 

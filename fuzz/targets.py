@@ -16,13 +16,17 @@ from unittest import mock
 
 from torsade.errors import TorsadeError
 
-__all__ = ["TARGETS", "Finding", "Target", "one_sentence", "tried"]
+__all__ = ["TARGETS", "HarmError", "Target", "one_sentence", "tried"]
 
 Reader = Callable[[bytes, Path], Any]
 """Takes the body of an input and an empty folder to work in."""
 
 
-class Finding(Exception):
+LONGEST_SENTENCE = 700
+"""Most signs of a sentence: some name all choices that there are."""
+
+
+class HarmError(Exception):
     """Something that must not come of any input."""
 
 
@@ -45,7 +49,7 @@ def tried(target: Target, data: bytes, folder: Path) -> None:
     except TorsadeError as error:
         try:
             one_sentence(str(error))
-        except Finding as found:
+        except HarmError as found:
             raise found from error
 
 
@@ -54,12 +58,13 @@ def one_sentence(message: str) -> None:
 
     Raises
     ------
-    Finding
+    HarmError
         Of several lines or sentences outside what it quotes, with signs that cannot be shown, or endless.
     """
     plain = re.sub(r"'(?:[^'\\]|\\.)*'|\"(?:[^\"\\]|\\.)*\"", "''", message)
-    if not message.strip() or not message.isprintable() or re.search(r"(?<!\.)\. ", plain.strip()) or len(message) > 700:
-        raise Finding(f"not one sentence that can be shown: {message[:1000]!r}")
+    several = re.search(r"(?<!\.)\. ", plain.strip())
+    if several or not message.strip() or not message.isprintable() or len(message) > LONGEST_SENTENCE:
+        raise HarmError(f"not one sentence that can be shown: {message[:1000]!r}")
 
 
 # --- files
@@ -91,12 +96,12 @@ def _curves(path: Path) -> None:
     again = read_centerline(path.with_name("b.npz"))
     degenerate = any((x[0] == x[-1]).all() for x in found.strands)
     if not degenerate and [x.tobytes() for x in again.strands] != [x.tobytes() for x in found.strands]:
-        raise Finding("strands are not read back as they were written")
+        raise HarmError("strands are not read back as they were written")
     check(found, 2e-4)
 
 
 def _arrays(kind: str) -> Reader:
-    """NPY and NPZ, as bytes; or NPZ as JSON: [name, header, length of data, whether packed] of each member."""
+    """NPY and NPZ, as bytes; or as JSON: [name, header, length of data, whether packed] of each member."""
     if kind != "members":
         return _of_files(_curves)(kind)
 
@@ -178,7 +183,7 @@ def _codes(kind: str) -> Reader:
         for name, code in codes_of(diagram).items():
             again = None if code is None else from_text(code).n_crossings
             if name != "conway" and again not in (None, diagram.n_crossings) and not diagram.circles:
-                raise Finding(f"the {name} code {code!r} is of another number of crossings")
+                raise HarmError(f"the {name} code {code!r} is of another number of crossings")
 
     return one
 
@@ -203,10 +208,10 @@ def checked_spec(spec: Any) -> None:
     """A valid specification means the same when it is stored and read, and knows what a result says of it."""
     stored = spec.stored()
     if type(spec)(**json.loads(json.dumps(stored, allow_nan=False))) != spec:
-        raise Finding(f"{stored} is another specification when it is read again")
+        raise HarmError(f"{stored} is another specification when it is read again")
     json.dumps(json.loads(spec.attributes()["model"]))
     if hasattr(spec, "lasting") and not 0 < spec.lasting < float("inf"):
-        raise Finding(f"{stored} lasts {spec.lasting} s")
+        raise HarmError(f"{stored} lasts {spec.lasting} s")
 
 
 def _specs(kind: str) -> Reader:
@@ -224,7 +229,7 @@ def _specs(kind: str) -> Reader:
         if isinstance(fields, dict):
             checked_spec(PROTOCOLS[kind](**fields))
 
-    return toml if kind == "toml" else {name: of_fields for name in PROTOCOLS}[kind]
+    return toml if kind == "toml" else dict.fromkeys(PROTOCOLS, of_fields)[kind]
 
 
 # --- the shell
@@ -235,7 +240,11 @@ def _command(kind: str) -> Reader:
     if kind != "torsade":
         raise KeyError(kind)
 
+    from fuzz.samples import files
+
     def one(body: bytes, folder: Path) -> None:
+        for name, content in files().items():
+            (folder / name).write_bytes(content)
         arguments = [os.fsdecode(word) for word in body.split(b"\n") if b"\0" not in word]
         if not any(".." in word or word.startswith(("/", "~")) for word in arguments):
             _shell(arguments, folder)
@@ -269,7 +278,8 @@ def _shell(arguments: list[str], folder: Path) -> None:
 
     out, err = (io.TextIOWrapper(io.BytesIO(), "utf-8", errors) for errors in ("strict", "backslashreplace"))
     code: Any = None
-    with contextlib.chdir(folder), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err), _nothing_slow():
+    shown = contextlib.redirect_stdout(out), contextlib.redirect_stderr(err)
+    with contextlib.chdir(folder), shown[0], shown[1], _nothing_slow():
         try:
             main(arguments)
         except SystemExit as done:
@@ -278,10 +288,10 @@ def _shell(arguments: list[str], folder: Path) -> None:
         err.flush()
     printed, said = (f.buffer.getvalue().decode() for f in (out, err))  # type: ignore[attr-defined]
     if code not in (0, 2) or "Traceback" in said:
-        raise Finding(f"exit code {code}: {said[:1000]}")
+        raise HarmError(f"exit code {code}: {said[:1000]}")
     if code == 2:
         if printed or not said.startswith("torsade: ") or said.count("\n") != 1:
-            raise Finding(f"exit code 2, and not one line: {printed[:300]!r}, {said[:700]!r}")
+            raise HarmError(f"exit code 2, and not one line: {printed[:300]!r}, {said[:700]!r}")
         one_sentence(said.strip())
 
 
@@ -289,9 +299,9 @@ TARGETS = MappingProxyType(
     {
         "curves": Target(_of_files(_curves), ("torsade.files", "torsade.centerline")),
         "arrays": Target(_arrays, ("torsade.files",)),
-        "tables": Target(_tables, ("torsade.files", "torsade.fracture.trials", "torsade.fracture.pendulum", "torsade.cli")),
+        "tables": Target(_tables, ("torsade.files", "torsade.fracture.trials", "torsade.cli")),
         "codes": Target(_codes, ("torsade.topology.codes", "torsade.topology.tangle", "torsade.cli.codes")),
-        "names": Target(_names, ("torsade.knots.finding", "torsade.units", "torsade.topology.codes", "torsade.topology.named")),
+        "names": Target(_names, ("torsade.knots.finding", "torsade.units", "torsade.topology.named")),
         "specs": Target(_specs, ("torsade.protocols", "torsade.units", "torsade.knots.finding")),
         "results": Target(_results, ("torsade.results", "torsade.store", "torsade.places")),
         "shell": Target(_command, ("torsade.cli", "torsade.protocols", "torsade.knots.finding")),

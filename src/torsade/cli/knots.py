@@ -31,7 +31,8 @@ def list_knots(text: str, kind: str | None, json: bool) -> int:
         return 0
     if not found:
         raise TorsadeError(
-            f"nothing has {quoted(text)} in its name; leave it out to see all, or give part of a name such as fish"
+            f"nothing has {quoted(text)} in its name; leave it out to see all, or give part of a name such "
+            "as fish"
         )
     for kind_found in dict.fromkeys(entry.kind for entry in found):
         print(f"{kind_found}: {KINDS[kind_found]}")

@@ -144,8 +144,8 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
             option = "--centerline" if unused[0].lower().endswith(SUFFIXES) else "--knot"
             return f"{quoted(unused[0])} comes without its option; did you mean {option} {shown(unused[0])}?"
         return (
-            f"{quoted(unused[0])} belongs to no option; give every value after its option, and quote values with "
-            'units, such as --force "15 N"'
+            f"{quoted(unused[0])} belongs to no option; give every value after its option, and quote values "
+            'with units, such as --force "15 N"'
         )
     if kind == "MissingArgumentError":
         last = shown(next((a for a in reversed(arguments) if a.startswith("--")), "an option"))

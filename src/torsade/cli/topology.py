@@ -54,7 +54,9 @@ def topology(
 
 def _drawings(text: str) -> int:
     if not re.fullmatch(r"\d{1,6}", text.strip(), re.A):
-        raise TorsadeError(f"--drawings is {quoted(text)}; give a whole number from 0 to 999999, such as 2000")
+        raise TorsadeError(
+            f"--drawings is {quoted(text)}; give a whole number from 0 to 999999, such as 2000"
+        )
     return int(text)
 
 

@@ -126,8 +126,8 @@ def _known_pull(diagram: Diagram, pulled: str | None) -> str | None:
     if not usable or not fits:
         has = f"ends {' '.join(diagram.ends)}" if diagram.ends else "no ends"
         raise TorsadeError(
-            f"pulled ends are {quoted(pulled)} of a diagram with {has}; give the clamped, then the pulled end, "
-            'one of each of two open strands, such as "A1B1", or both of one'
+            f"pulled ends are {quoted(pulled)} of a diagram with {has}; give the clamped, then the pulled "
+            'end, one of each of two open strands, such as "A1B1", or both of one'
         )
     return "".join(names)
 

@@ -49,7 +49,9 @@ def find(name: str) -> Entry:
         return _known()[plain]
     if match := re.fullmatch(r"mirror(?: image)?(?: of)?(?: the)? (.+)", plain):
         if match[1].startswith("mirror "):
-            raise TorsadeError(f"{quoted(text)} is mirrored more than once; give mirror once, or leave it out")
+            raise TorsadeError(
+                f"{quoted(text)} is mirrored more than once; give mirror once, or leave it out"
+            )
         return _mirrored(find(match[1] if match[1] in _known() else text[-len(match[1]) :]))
     found = _by_pattern(text)
     if found is None:

@@ -72,7 +72,9 @@ def read_fields(path: str | Path) -> dict[str, Any]:
     except FileNotFoundError:
         raise TorsadeError(f"there is no file {name}; give the path of a TOML specification") from None
     except RecursionError:
-        raise TorsadeError(f"{name} has brackets too deep within each other; give a TOML specification") from None
+        raise TorsadeError(
+            f"{name} has brackets too deep within each other; give a TOML specification"
+        ) from None
     except (OSError, ValueError) as error:
         if isinstance(error, tomllib.TOMLDecodeError):
             reason = str(error).rstrip(".")
@@ -89,7 +91,8 @@ def read_fields(path: str | Path) -> dict[str, Any]:
         near = difflib.get_close_matches(str(protocol), PROTOCOLS, n=1)
         hint = f"did you mean {near[0]!r}? " if near else ""
         raise TorsadeError(
-            f"{name} has protocol {quoted(protocol)}, which is unknown; {hint}choose one of {', '.join(PROTOCOLS)}"
+            f"{name} has protocol {quoted(protocol)}, which is unknown; {hint}choose one of "
+            f"{', '.join(PROTOCOLS)}"
         )
     centerline = fields.get("centerline")
     if isinstance(centerline, str) and (path.parent / centerline).is_file():

@@ -45,7 +45,8 @@ class Knotted(Pulled):
         """Refuse two shapes, or none, or a unit for none."""
         if self.knot is not None and self.centerline is not None:
             raise TorsadeError(
-                f"knot {quoted(self.knot)} and centerline {quoted(self.centerline)} are both given; give one of them"
+                f"knot {quoted(self.knot)} and centerline {quoted(self.centerline)} are both given; give one "
+                "of them"
             )
         if self.knot is None and self.centerline is None:
             raise TorsadeError(f"nothing to pull is given; {advice}")

@@ -1,0 +1,67 @@
+"""Inputs that were found to crash, to hang or to be refused in a way nobody can read; they stay mended."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+from fuzz.samples import FIELDS
+from fuzz.targets import TARGETS, tried
+
+
+def spec(protocol: str, **changed: object) -> bytes:
+    return f"{protocol}\n{json.dumps(FIELDS[protocol] | changed)}".encode()
+
+
+def track(angles: object) -> bytes:
+    """A pendulum's track of these angles."""
+    rows = [f"{0.05 * k!r},{float(a)!r},240" for k, a in enumerate(np.asarray(angles).tolist())]
+    return ("pendulum\ntime_s,angle_deg,length_mm\n" + "\n".join(rows) + "\n").encode()
+
+
+FOUND = {
+    "powers of powers fill the memory": ("names", b"length\n1 " + b"(" * 12 + b"Tm" + b")^9" * 12),
+    "percent of percent of percent": ("names", b"number\n1 " + b"(" * 20 + b"%" + b")^9" * 20),
+    "mirrored without end": ("names", b"name\n" + b"mirror " * 2000 + b"reef"),
+    "mirrored without end, by underscores": ("names", b"name\n" + b"Mirror_" * 2000 + b"reef"),
+    "cut open without end": ("names", b"strand\n" + b"open " * 2000 + b"3_1"),
+    "cut open and mirrored without end": ("names", b"name\n" + b"open_mirror-" * 2000 + b"3_1"),
+    "a sum of very many": ("names", b"name\n" + b"#".join([b"3_1"] * 20_000)),
+    "a torus knot of 5000 digits": ("names", b"name\nT(" + b"9" * 5000 + b",2)"),
+    "an overhand knot of 5000 digits": ("names", b"name\noverhand-" + b"9" * 5000),
+    "digits of another script": ("names", "name\nT(٣,²)".encode()),
+    "TOML nested without end": ("specs", b"toml\na = " + b"[" * 5000),
+    "a field of many letters": ("specs", spec("tighten", **{"a" * 5000: 1})),
+    "a protocol of many letters": ("specs", b'toml\nprotocol = "' + b"x" * 5000 + b'"'),
+    "a section of no area": ("specs", spec("prison-escape", radius="1e-170 m")),
+    "a section beyond all bounds": ("specs", spec("tighten", radius=1e200)),
+    "a stiffness of nothing": ("specs", spec("pendulum", radius="1e-100 m")),
+    "a mass beyond all bounds": ("specs", spec("pendulum", mass=1e300, mass_radius=1e10)),
+    "masses beyond all bounds": ("tables", b"buckling\nmass_g,length_mm\n1e308,1e308\n"),
+    "masses of nothing": ("tables", b"weights\nmass_g,length_mm\n1e-300,1e308\n"),
+    "samples of no length": ("tables", b"buckling\nmass_g,length_mm\n1e308,1e-300\n"),
+    "samples as long as no number": ("tables", b"buckling\nmass_g,length_mm\n1e155,1e77\n"),
+    "a curvature beyond all bounds": ("tables", b"trials\npieces,limit_curvature_per_m\n3,1e155\n"),
+    "a pendulum with two points a swing": ("tables", track((-1.0) ** np.arange(40))),
+    "a pendulum that swings once": ("tables", track([0.0] * 20 + [1.0] + [0.0] * 19)),
+    "a pendulum that never returns": ("tables", track(np.exp(np.arange(40.0)))),
+    "a command of many letters": ("shell", b"torsade\n" + b"x" * 5000),
+    "an option of many letters": ("shell", b"torsade\nrun\ntighten\n--" + b"x" * 5000 + b"=1"),
+    "an option that cannot be shown": ("shell", b"torsade\nrun\n--\x0ewist\n1"),
+    "an option that steers the terminal": ("shell", b"torsade\ntopology\nreef\n--\x1b[31mred"),
+    "a protocol that is no text": ("shell", b"torsade\nrun\n\xff\xfe"),
+    "a file whose name is no text": ("shell", b"torsade\nconvert\na.xyz\nb\xff.csv"),
+}
+"""By what is wrong: what is fuzzed, and the input as `fuzz.targets.tried` takes it."""
+
+
+@pytest.mark.parametrize("wrong", FOUND)
+def test_what_was_found_is_mended(tmp_path: Path, wrong: str) -> None:
+    target, data = FOUND[wrong]
+    tried(TARGETS[target], data, tmp_path)
