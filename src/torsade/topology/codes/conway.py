@@ -100,7 +100,7 @@ def _check_numbers(text: str, code: str) -> None:
     numbers = re.findall(r"\d+" if apart else r"\d", text)
     signs = text.count("+") + text.count("-")
     limited(len(numbers), "numbers", "Conway code")
-    limited(sum(int(number[:9]) for number in numbers) + signs, "crossings", "Conway code")
+    limited(sum(int(number.lstrip("0")[:9] or 0) for number in numbers) + signs, "crossings", "Conway code")
     depth = 0
     for sign in text:
         depth += (sign == "(") - (sign == ")")
