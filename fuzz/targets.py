@@ -292,6 +292,9 @@ def _shell(arguments: list[str], folder: Path) -> None:
     if code == 2:
         if printed or not said.startswith("torsade: ") or said.count("\n") != 1:
             raise HarmError(f"exit code 2, and not one line: {printed[:300]!r}, {said[:700]!r}")
+        # The name of a file is shown in full.
+        for path in (word for word in arguments if len(word) > 100 and re.search(r"[./]", word)):
+            said = said.replace(repr(path), "''").replace(path, "")
         one_sentence(said.strip())
 
 

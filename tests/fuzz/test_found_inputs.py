@@ -35,7 +35,10 @@ FOUND = {
     "a sum of very many": ("names", b"name\n" + b"#".join([b"3_1"] * 20_000)),
     "a torus knot of 5000 digits": ("names", b"name\nT(" + b"9" * 5000 + b",2)"),
     "an overhand knot of 5000 digits": ("names", b"name\noverhand-" + b"9" * 5000),
+    "zeros of 5000 digits": ("codes", b"code\n[2 " + b"0" * 5000 + b" 3]"),
+    "a number of 30 digits of another script": ("codes", ("code\n[2 " + 9 * "٠" + 20 * "٩" + "]").encode()),
     "a number behind zeros": ("codes", b"code\n[2 " + b"0" * 20 + b"7" + b"0" * 30 + b"]"),
+    "a crossing of many labels": ("codes", b"code\nX[" + b"A4," * 5000 + b"A5]"),
     "TOML nested without end": ("specs", b"toml\na = " + b"[" * 5000),
     "a field of many letters": ("specs", spec("tighten", **{"a" * 5000: 1})),
     "a protocol of many letters": ("specs", b'toml\nprotocol = "' + b"x" * 5000 + b'"'),
@@ -54,6 +57,8 @@ FOUND = {
     "an option of many letters": ("shell", b"torsade\nrun\ntighten\n--" + b"x" * 5000 + b"=1"),
     "an option that cannot be shown": ("shell", b"torsade\nrun\n--\x0ewist\n1"),
     "an option that steers the terminal": ("shell", b"torsade\ntopology\nreef\n--\x1b[31mred"),
+    "a folder whose name is too long": ("shell", b"torsade\nfigure\n4-5\n--out\n" + b"x" * 5000),
+    "a file whose name is too long": ("shell", b"torsade\nconvert\na.xyz\n" + b"x" * 5000 + b".csv"),
     "a file whose name is no text": ("shell", b"torsade\nconvert\na.xyz\nb\xff.csv"),
 }
 """By what is wrong: what is fuzzed, and the input as `fuzz.targets.tried` takes it."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import errno
 import io
 import os
 import sys
 from collections.abc import Sequence
 
 from torsade.cli.messages import say
-from torsade.errors import TorsadeError, reason_of
+from torsade.errors import TorsadeError, quoted, reason_of
 
 __all__ = ["main"]
 
@@ -51,6 +52,9 @@ def _status(arguments: list[str]) -> int:
         _silence()
         return 1
     except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            say(f"{quoted(str(error.filename))} is too long for the name of a file; give a shorter one")
+            return BAD_INPUT
         if error.filename is not None:
             raise  # of a file that somebody should have looked after
         _silence()

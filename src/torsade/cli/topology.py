@@ -15,7 +15,7 @@ import numpy as np
 
 from torsade.cli.codes import codes_of
 from torsade.cli.subject import Subject, subject
-from torsade.errors import TorsadeError, quoted
+from torsade.errors import TorsadeError, listed, quoted
 from torsade.topology.codes import to_pd
 from torsade.topology.counting import State, circulation_range, pull_choices, state
 from torsade.topology.diagram import Diagram
@@ -110,7 +110,7 @@ def _pulled(given: Subject, pulled: str | None) -> str | None:
     tips = sorted(given.diagram.ends)
     pairs = list(zip(tips[::2], tips[1::2], strict=True))
     if sum(map(len, names)) != len(text) or not _is_choice(names, pairs):
-        choices = " and ".join(" or ".join(two) for two in pairs)
+        choices = listed([" or ".join(two) for two in pairs], " and ")
         raise TorsadeError(f"--pulled is {quoted(pulled)}; give one of each open strand, {choices}")
     return "".join(names)
 
