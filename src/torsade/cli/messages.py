@@ -158,7 +158,7 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
 
 def shown(word: str) -> str:
     """A word as it was typed, or quoted where it is long or strange."""
-    return word if re.fullmatch(r"[\w ./=-]{1,60}", word) and word.isprintable() else quoted(word)
+    return word if re.fullmatch(r"[\w./=-]{1,60}", word) and word.isprintable() else quoted(word)
 
 
 def _about(command: _Command, kind: str, unused: Sequence[str], arguments: Sequence[str]) -> str:
