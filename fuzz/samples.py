@@ -197,6 +197,7 @@ def _shell() -> list[bytes]:
         ["trials", "trials.csv", "--slow", "20 mm/s", "--criterion", "von_mises", "--sectors", "5"],
         ["material", "--radius", "0.7 mm", "--radius-error", "25 um", "--weights", "masses.csv"],
         ["figure", "4-5", "--out", "figures", "--preset", "standard", "--workers", "2", "--quick", "--json"],
+        ["movie", "a.zarr", "--out", "a.mp4", "--seconds", "3", "--size", "64x48", "--frames", "0:3"],
         ["demo", "--out", "demo"],
         ["--version"],
         ["run", "tighten", "--help"],

@@ -260,6 +260,7 @@ SLOW = (
     "torsade.cli.tight.loose_knot",
     "torsade.cli.tight.loose_diagram",
     "torsade.figures.runs.results",
+    "torsade.view.film.movie",
 )
 """What computes for long, and is not what is fuzzed."""
 

@@ -51,6 +51,8 @@ SCRIPTS = (
     "tails",
     "torque_writhe",
     "tightening",
+    "movies",
+    "block",
 )
 
 
@@ -72,16 +74,18 @@ def test_a_table_is_printed_without_json(script: Any, capsys: pytest.CaptureFixt
 
 
 def test_an_absent_peer_is_skipped_in_one_sentence(script: Any, capsys: pytest.CaptureFixture[str]) -> None:
-    peer = script("peers.pyelastica_contact")
+    peer = script("peers.pyelastica")
     assert list(peer.main(["--quick"], installed=lambda: False)) == ["skipped"]
     assert capsys.readouterr().out.strip() == peer.ABSENT
 
 
-def test_the_coil_compared_with_the_peer_touches_itself(script: Any) -> None:
-    peer = script("peers.pyelastica_contact")
-    seconds, contacts = peer.ours(peer.coil(100), steps=3, repeats=1)
-    assert seconds > 0
-    assert contacts > 20
+def test_the_knot_compared_with_the_peer_touches_itself_at_rest(script: Any) -> None:
+    peer = script("peers.pyelastica")
+    motion = peer.ours(peer.trefoil(100))
+    way = peer.ours_to_rest(motion, peer.AT_REST)
+    assert len(motion.measure().contacts) > 5
+    assert 0 < way.arrival() < len(way.distance) - 1
+    assert abs(way.distance[-1] / way.distance[-3] - 1) < 1e-6
 
 
 def test_the_solvers_compared_agree(script: Any) -> None:
@@ -89,6 +93,13 @@ def test_the_solvers_compared_agree(script: Any) -> None:
     assert row["contacts"] > 0
     assert row["residual_of_direct"] < 1e-9
     assert row["off_by_conjugate_gradients"] < 1e-2
+
+
+def test_a_block_of_threads_finds_the_direct_solution(script: Any) -> None:
+    row = script("block").compare(0.6, 0.002)
+    assert row["contacts"] > 0
+    assert row["off"] < 1e-4
+    assert row["barriers"] > row["iterations"] * math.log2(row["nodes"])
 
 
 def test_absent_centerlines_are_left_out_in_one_sentence(script: Any, tmp_path: Path) -> None:

@@ -59,6 +59,7 @@ FOUND = {
     "an option that steers the terminal": ("shell", b"torsade\ntopology\nreef\n--\x1b[31mred"),
     "a folder whose name is too long": ("shell", b"torsade\nfigure\n4-5\n--out\n" + b"x" * 5000),
     "a file whose name is too long": ("shell", b"torsade\nconvert\na.xyz\n" + b"x" * 5000 + b".csv"),
+    "a movie of a folder without a name": ("shell", b"torsade\nmovie\n."),
     "a file whose name is no text": ("shell", b"torsade\nconvert\na.xyz\nb\xff.csv"),
 }
 """By what is wrong: what is fuzzed, and the input as `fuzz.targets.tried` takes it."""
