@@ -20,6 +20,9 @@ __all__ = ["bend_diagram", "bend_names", "find", "interpret", "known_bend", "kno
 
 _SUTURE = r"\(?\s*([+-]?\d{1,6})\s*,\s*([+-]?\d{1,6})\s*\)?"
 
+LONGEST_NAME = 5000
+"""Longest name [characters], of a sum of 500 knots."""
+
 LARGEST = 99
 """Largest number in the name of a torus knot or an overhand knot."""
 
@@ -44,6 +47,8 @@ def find(name: str) -> Entry:
         TorsadeError: nothing is called so; the sentence says which name is nearest.
     """
     text = name.strip()
+    if len(text) > LONGEST_NAME:
+        raise TorsadeError(f"a name of {len(text)} characters is given; give at most {LONGEST_NAME}")
     plain = _plain(text)
     if plain in _known():
         return _known()[plain]

@@ -62,7 +62,7 @@ def named_diagram(name: str) -> Diagram:
 
 def _plain(part: str) -> str:
     """A word of `COMMON_NAMES` without what may follow it, or the part as it is."""
-    word = re.sub(r"[\s_-]+(knot|link|rings)$", "", part.strip().lower())
+    word = re.sub(r"(?<![\s_-])[\s_-]+(knot|link|rings)$", "", part.strip().lower())
     return word if word in COMMON_NAMES else part.strip()
 
 
