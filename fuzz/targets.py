@@ -156,7 +156,8 @@ def _results(name: str) -> Reader:
         (whole / name).write_bytes(body)
         try:
             found = Result.open(whole)
-            PROTOCOLS[found.protocol].report(found)
+            if found.protocol in PROTOCOLS:
+                PROTOCOLS[found.protocol].report(found)
             str((found, found.spec, found.complete, found.frames, found.c_f, found.last_held))
         finally:
             (whole / name).write_bytes(sound)
