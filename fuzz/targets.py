@@ -112,7 +112,7 @@ def _arrays(kind: str) -> Reader:
             return
         with zipfile.ZipFile(folder / "a.npz", "w") as archive, contextlib.suppress(ValueError, UserWarning):
             for name, header, length, packed in members[:20]:
-                info = zipfile.ZipInfo(name)
+                info = zipfile.ZipInfo(name[:1000])
                 info.compress_type = zipfile.ZIP_DEFLATED if packed else zipfile.ZIP_STORED
                 head = header.encode("utf-8", "replace") + b"\n"
                 with archive.open(info, "w", force_zip64=True) as stream:

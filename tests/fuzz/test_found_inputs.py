@@ -25,6 +25,8 @@ def track(times: object, angles: object) -> bytes:
     return ("pendulum\ntime_s,angle_deg,length_mm\n" + "\n".join(rows) + "\n").encode()
 
 
+HEADER = "{'descr': '<f8', 'fortran_order': False, 'shape': (True, 3), }"
+
 FOUND = {
     "powers of powers fill the memory": ("names", b"length\n1 " + b"(" * 12 + b"Tm" + b")^9" * 12),
     "percent of percent of percent": ("names", b"number\n1 " + b"(" * 20 + b"%" + b")^9" * 20),
@@ -47,6 +49,7 @@ FOUND = {
     "a section beyond all bounds": ("specs", spec("tighten", radius=1e200)),
     "a stiffness of nothing": ("specs", spec("pendulum", radius="1e-100 m")),
     "a mass beyond all bounds": ("specs", spec("pendulum", mass=1e300, mass_radius=1e10)),
+    "a shape of truth values": ("arrays", b"members\n" + json.dumps([["x.npy", HEADER, 96, True]]).encode()),
     "masses beyond all bounds": ("tables", b"buckling\nmass_g,length_mm\n1e308,1e308\n"),
     "masses of nothing": ("tables", b"weights\nmass_g,length_mm\n1e-300,1e308\n"),
     "samples of no length": ("tables", b"buckling\nmass_g,length_mm\n1e308,1e-300\n"),
