@@ -43,6 +43,7 @@ FOUND = {
     "a number behind zeros": ("codes", b"code\n[2 " + b"0" * 20 + b"7" + b"0" * 30 + b"]"),
     "a crossing of many labels": ("codes", b"code\nX[" + b"A4," * 5000 + b"A5]"),
     "TOML nested without end": ("specs", b"toml\na = " + b"[" * 5000),
+    "TOML with a key of 100 000 parts": ("specs", b"toml\n1" + b".2" * 100_000 + b" = 3"),
     "a field of many letters": ("specs", spec("tighten", **{"a" * 5000: 1})),
     "a protocol of many letters": ("specs", b'toml\nprotocol = "' + b"x" * 5000 + b'"'),
     "a section of no area": ("specs", spec("prison-escape", radius="1e-170 m")),
@@ -63,6 +64,7 @@ FOUND = {
     "an option that steers the terminal": ("shell", b"torsade\ntopology\nreef\n--\x1b[31mred"),
     "a folder whose name is too long": ("shell", b"torsade\nfigure\n4-5\n--out\n" + b"x" * 5000),
     "a file whose name is too long": ("shell", b"torsade\nconvert\na.xyz\n" + b"x" * 5000 + b".csv"),
+    "a demo in a folder of many letters": ("shell", b"torsade\ndemo\n--out\n" + b"[" * 1000),
     "a movie of a folder without a name": ("shell", b"torsade\nmovie\n."),
     "a file whose name is no text": ("shell", b"torsade\nconvert\na.xyz\nb\xff.csv"),
 }
