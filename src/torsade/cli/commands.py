@@ -135,8 +135,8 @@ def check_drawings(picture: str | None, plot: str | None, movie: str | None = No
                 pass
         except OSError as error:
             raise TorsadeError(
-                f"cannot write {quoted(path, 200)} ({reason_of(error)}); give a file in a folder that exists and "
-                "can be written"
+                f"cannot write {quoted(path, 200)} ({reason_of(error)}); give a file in a folder that exists "
+                "and can be written"
             ) from None
     if picture is not None and plot is not None and Path(picture).resolve() == Path(plot).resolve():
         raise TorsadeError(
