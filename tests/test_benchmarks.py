@@ -51,6 +51,8 @@ SCRIPTS = (
     "tails",
     "torque_writhe",
     "tightening",
+    "breaking",
+    "third_break",
     "movies",
     "block",
 )

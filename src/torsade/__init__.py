@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from torsade.errors import TorsadeError
     from torsade.files import read_centerline, read_csv, write_centerline, write_csv
     from torsade.material import MATERIALS, Material, Section, named_material
-    from torsade.results import Result
+    from torsade.results import Result, open_result
     from torsade.results import open_result as open
 
 __all__ = [
@@ -34,6 +34,7 @@ __all__ = [
     "knots",
     "named_material",
     "open",
+    "open_result",
     "protocols",
     "read_centerline",
     "read_csv",
@@ -54,6 +55,7 @@ _HOMES = {
     "Section": "torsade.material",
     "TorsadeError": "torsade.errors",
     "named_material": "torsade.material",
+    "open_result": "torsade.results",
     "read_centerline": "torsade.files",
     "read_csv": "torsade.files",
     "write_centerline": "torsade.files",

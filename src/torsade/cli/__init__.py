@@ -10,11 +10,11 @@ from collections.abc import Sequence
 
 from torsade.cli.messages import say
 from torsade.errors import TorsadeError, quoted, reason_of
+from torsade.stopping import exit_code, sigterm_stops
 
 __all__ = ["main"]
 
 BAD_INPUT = 2
-INTERRUPTED = 130
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
@@ -22,7 +22,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     # A file's name need not be text, nor every terminal know every letter.
     if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout.errors == "strict":
         sys.stdout.reconfigure(errors="backslashreplace")
-    sys.exit(_status(sys.argv[1:] if arguments is None else list(arguments)))
+    with sigterm_stops():
+        code = _status(sys.argv[1:] if arguments is None else list(arguments))
+    sys.exit(code)
 
 
 def _status(arguments: list[str]) -> int:
@@ -46,7 +48,7 @@ def _status(arguments: list[str]) -> int:
         return BAD_INPUT
     except KeyboardInterrupt as error:
         say(str(error) or "interrupted before the first frame; nothing is saved")
-        return INTERRUPTED
+        return exit_code()
     except BrokenPipeError:
         # Whoever read the output has had enough, as in `torsade run ... | head`.
         _silence()

@@ -212,14 +212,9 @@ def _draw(
 
 
 def _picture(result: Result, path: str) -> None:
-    if result.protocol in BREAKING:
-        from torsade.view.cascade import draw_pieces
+    from torsade.view.window import draw_result
 
-        draw_pieces(result.dataset, path)
-        return
-    from torsade.view.scene import render_result
-
-    render_result(result.dataset, path, frame=result.last_held)
+    draw_result(result, path)
 
 
 def _movie(result: Result, path: str, quiet: bool) -> None:

@@ -34,6 +34,7 @@ __all__ = [
     "half",
     "mean_by",
     "pieces_colour",
+    "pieces_colours",
     "sector_table",
     "trial_table",
     "twist_trials",
@@ -67,6 +68,12 @@ _COUNTS = ("#5b3a8e", "#2f6fa8", "#3f9e8f", "#8fbf4d", "#e0b63a", "#d97a34", "#b
 def pieces_colour(pieces: int) -> str:
     """Of a number of pieces, from 2 on."""
     return _COUNTS[min(max(pieces - 2, 0), len(_COUNTS) - 1)]
+
+
+def pieces_colours(most: int) -> Any:
+    """Of mean numbers of pieces from 2 to `most`: those of whole numbers, and what lies between."""
+    colours = [pieces_colour(pieces) for pieces in range(2, most + 1)]
+    return require("matplotlib.colors").LinearSegmentedColormap.from_list("pieces", colours)
 
 
 def twist_trials(which: int, degrees: Sequence[float], seeds: Sequence[int]) -> dict[str, SnapTwist]:

@@ -14,7 +14,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from torsade import places
+from torsade import places, stopping
 from torsade.errors import TorsadeError, counted, reason_of
 from torsade.figures import stored
 from torsade.results import Result
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 __all__ = ["make_folder", "results", "run_path"]
 
-DRAWING = ("view", "figures", "cli")
+DRAWING = ("view", "figures", "export", "cli")
 """Parts of the package that no number depends on."""
 
 BUSY = "another command is making runs in {out} ({owner}); wait for it or give another --out"
@@ -197,18 +197,35 @@ def _outcomes(
         try:
             for future in as_completed(waiting):
                 yield future.result()
+        except KeyboardInterrupt:
+            if stopping.by_sigterm():  # unlike Ctrl-C, it may have come to this process alone
+                for worker in multiprocessing.active_children():
+                    worker.terminate()
+            raise
         finally:
             pool.shutdown(cancel_futures=True)
 
 
 def _wait() -> None:
-    """Leave Ctrl-C to whoever waits for this process, while it has nothing to do."""
+    """Leave Ctrl-C and SIGTERM to whoever waits for this process, while it has nothing to do."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _leave)
+
+
+def _leave(number: int, frame: object) -> None:
+    """Begin nothing more, and end a process that nobody waits for any more."""
+    stopping.heard(number)
+    waiting = multiprocessing.parent_process()
+    if waiting is None or not waiting.is_alive():
+        os._exit(128 + number)
 
 
 def _run_apart(job: Mapping[str, tuple[Spec, Path]], fresh: bool) -> dict[str, str | None]:
-    """Runs in a process of their own, which Ctrl-C stops."""
+    """Runs in a process of their own, which Ctrl-C and SIGTERM stop."""
+    if stopping.by_sigterm():
+        raise KeyboardInterrupt
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGTERM, stopping.stop)
     try:
         return _run(job, fresh)
     finally:

@@ -4,7 +4,8 @@
 
 Bending and twist are stored as everywhere in this package. Nodes carry mass, edges the rotary inertia rho J l
 of their spin. That of bending, rho I, is left out, as in thesis 3.5, and with it the couple rho J omega t_t
-of the spin's turning axis: both are smaller than what is kept by about (h/lambda)^2 at wavelength lambda.
+of the spin's turning axis. At wavelength lambda rotary inertia slows bending waves by (pi^2/2) (h/lambda)^2,
+edges of length l by (pi^2/3) (l/lambda)^2.
 
 Ends are those of `torsade.motion.ends`: free, hinged (`clamp`), clamped (with tangent=True), or moved.
 A clamp holds the edge at the end, so that the fiber bends from the middle of that edge on; with
@@ -26,7 +27,7 @@ from torsade.errors import TorsadeError
 from torsade.material import Material, Section
 from torsade.motion import verlet
 from torsade.motion.ends import Boundary
-from torsade.motion.moving import Outcome
+from torsade.motion.moving import Outcome, check_saved
 
 __all__ = ["Energies", "Inertial", "longest_step"]
 
@@ -227,6 +228,7 @@ class Inertial:
 
     def recover(self, saved: Mapping[str, NDArray[Any]]) -> None:
         """Go on from the arrays that `saved` gave, of the same fibers."""
+        check_saved(saved, self.saved())
         self.state = State(*(saved[name].copy() for name in State._fields))
         self.clock.steps[:] = saved["clock_steps"]
         self.clock.dissipation[:] = saved["clock_dissipation"]
