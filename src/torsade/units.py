@@ -42,8 +42,8 @@ __all__ = [
     "Velocity",
     "Viscosity",
     "bearable",
-    "is_bearable",
     "indefinite",
+    "is_bearable",
     "metres",
     "quantity",
 ]
