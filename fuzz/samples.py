@@ -198,6 +198,8 @@ def _shell() -> list[bytes]:
         ["material", "--radius", "0.7 mm", "--radius-error", "25 um", "--weights", "masses.csv"],
         ["figure", "4-5", "--out", "figures", "--preset", "standard", "--workers", "2", "--quick", "--json"],
         ["movie", "a.zarr", "--out", "a.mp4", "--seconds", "3", "--size", "64x48", "--frames", "0:3"],
+        ["info", "a.zarr", "--json"],
+        ["export", "a.zarr", "--to", "csv", "--out", "a"],
         ["demo", "--out", "demo"],
         ["--version"],
         ["run", "tighten", "--help"],
