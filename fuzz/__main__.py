@@ -60,7 +60,8 @@ def fuzz(target: str, folder: Path, seconds: float, wall: float, seed: int) -> N
             time.sleep(0.2)
             spent, memory = _measured(child.pid, spent)
             _, began, ended, _ = STATE.unpack_from(state.read_bytes())
-            slowest = max(slowest, ended - began, spent - began if not ended else 0)
+            if began:  # for a moment it is 0, while the child writes it anew
+                slowest = max(slowest, (ended or spent) - began)
             most = max(most, memory)
             if time.monotonic() > until:
                 harm = "no time"
