@@ -57,6 +57,10 @@ FOUND = {
     "samples as long as no number": ("tables", b"buckling\nmass_g,length_mm\n1e155,1e77\n"),
     "a curvature beyond all bounds": ("tables", b"trials\npieces,limit_curvature_per_m\n3,1e155\n"),
     "a pendulum in nanoseconds": ("tables", track(np.linspace(0, 2e-9, 40), (-1.0) ** np.arange(40))),
+    "a pendulum of very many points": (
+        "tables",
+        track(np.linspace(0, 9, 21_000), np.sin(np.arange(21_000.0))),
+    ),
     "a pendulum over ages": ("tables", track(np.cumsum(np.exp(np.arange(40.0))), np.arange(40.0) % 2)),
     "a command of many letters": ("shell", b"torsade\n" + b"x" * 5000),
     "an option of many letters": ("shell", b"torsade\nrun\ntighten\n--" + b"x" * 5000 + b"=1"),
