@@ -17,9 +17,9 @@ from torsade import store
 from torsade.errors import TorsadeError
 from torsade.figures.base import Table
 from torsade.figures.runs import results, run_path
-from torsade.figures.stored import opened, whole
 from torsade.places import Lock, attributes
 from torsade.protocols import PrisonEscape
+from torsade.protocols.stored import opened, whole
 
 
 def short(knot, **fields):

@@ -96,6 +96,18 @@ COMMANDS = MappingProxyType(
             "",
             "{} comes after the number; make one figure at a time, such as torsade figure 4-5",
         ),
+        "sweep": _Command(
+            ("--out", "--workers", "--scheduler", "--at-most"),
+            ("--retry-failed", "--keep", "--dry-run", "--json"),
+            "nothing is given; give a TOML file, such as pieces.toml",
+            "{} comes after the file; give one file, and every value after its option",
+        ),
+        "query": _Command(
+            (),
+            ("--csv", "--json"),
+            "nothing is given; give the folder of a sweep, such as pieces",
+            "{} comes after the query; put the whole query in one pair of quotes",
+        ),
         "info": _Command((), ("--json",), _NO_RESULT, _RESULT),
         "export": _Command(("--to", "--frames", "--out"), ("--json", "--overwrite"), _NO_EXPORT, _RESULT),
         "open": _Command(("--frame", "--picture"), ("--json",), _NO_RESULT, _RESULT),

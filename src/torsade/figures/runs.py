@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import multiprocessing
 import os
 import re
 import signal
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from torsade import places, stopping
 from torsade.errors import TorsadeError, counted, reason_of
-from torsade.figures import stored
+from torsade.protocols import stored
 from torsade.results import Result
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Progress, Spec
 
 __all__ = ["make_folder", "results", "run_path"]
-
-DRAWING = ("view", "figures", "export", "cli")
-"""Parts of the package that no number depends on."""
 
 BUSY = "another command is making runs in {out} ({owner}); wait for it or give another --out"
 
@@ -131,21 +125,7 @@ def make_folder(folder: Path) -> None:
 
 def run_path(label: str, spec: Spec, folder: Path) -> Path:
     """Where the run of a specification is kept: its label, and a hash of all that decides the result."""
-    asked = json.dumps(spec.stored() | {"h": spec.h}, sort_keys=True)
-    key = hashlib.sha256((asked + _sources()).encode()).hexdigest()[:16]
-    return folder / f"{re.sub(r'[^A-Za-z0-9.]+', '-', label).strip('-')}-{key}.zarr"
-
-
-@lru_cache(maxsize=1)
-def _sources() -> str:
-    """A hash of the sources that results come from: another version of them gives other runs."""
-    package = Path(__file__).parents[1]
-    digest = hashlib.sha256()
-    for path in sorted(package.rglob("*")):
-        parts = path.relative_to(package).parts
-        if path.suffix in (".py", ".json") and parts[0] not in DRAWING:
-            digest.update("/".join(parts).encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()
+    return folder / f"{re.sub(r'[^A-Za-z0-9.]+', '-', label).strip('-')}-{stored.key(spec)}.zarr"
 
 
 def _note(missing: int) -> str:

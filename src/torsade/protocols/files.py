@@ -23,7 +23,7 @@ from torsade.protocols.snap_quench import SnapQuench
 from torsade.protocols.snap_twist import SnapTwist
 from torsade.protocols.tighten import Tighten
 
-__all__ = ["PROTOCOLS", "load_spec", "merged", "read_fields"]
+__all__ = ["PROTOCOLS", "beside", "check_protocol", "load_spec", "merged", "read_fields", "read_toml"]
 
 PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
     {
@@ -38,7 +38,7 @@ PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
 )
 """The specification of every protocol, by name."""
 
-LARGEST = 2**15
+LARGEST = 2**16
 """Largest specification read [bytes]: a key of very many parts takes a time that goes as their square."""
 
 _REPLACES = MappingProxyType(
@@ -69,16 +69,31 @@ def load_spec(path: str | Path) -> Spec:
 
 def read_fields(path: str | Path) -> dict[str, Any]:
     """The fields in a TOML file, `protocol` among them and known, the others as they are."""
+    fields = read_toml(path)
+    check_protocol(fields.get("protocol"), repr(str(path)))
+    if "centerline" in fields:
+        fields["centerline"] = beside(path, fields["centerline"])
+    return fields
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """What is in a TOML file.
+
+    Raises
+    ------
+    TorsadeError
+        When the file is missing, cannot be read or is not TOML.
+    """
     from torsade.files.regular import Kind, opened
 
-    path, name = Path(path), repr(str(path))
+    name = repr(str(path))
     kind = Kind("fields", "reef.toml", "a specification", "leave out what is no field", "one field")
-    with opened(path, kind) as (file, _):
+    with opened(Path(path), kind) as (file, _):
         content = file.read(LARGEST + 1)
     if len(content) > LARGEST:
         raise TorsadeError(f"{name} has more than {LARGEST} bytes; give a TOML specification")
     try:
-        fields = tomllib.loads(content.decode("utf-8-sig"))
+        return tomllib.loads(content.decode("utf-8-sig"))
     except RecursionError:
         raise TorsadeError(
             f"{name} has brackets too deep within each other; give a TOML specification"
@@ -88,23 +103,35 @@ def read_fields(path: str | Path) -> dict[str, Any]:
         raise TorsadeError(f'{name} is not TOML: {reason}; write lines such as force = "15 N"') from None
     except UnicodeDecodeError:
         raise TorsadeError(f"cannot read {name} (not text in UTF-8); give a TOML specification") from None
-    protocol = fields.get("protocol")
+
+
+def check_protocol(protocol: object, where: str) -> type[Spec]:
+    """The specification of a protocol that is given somewhere.
+
+    Raises
+    ------
+    TorsadeError
+        When none is given, or one that is not known; the nearest is named.
+    """
     if protocol is None:
         raise TorsadeError(
-            f'{name} names no protocol; add a line such as protocol = "prison-escape"; there are '
+            f'{where} names no protocol; add a line such as protocol = "prison-escape"; there are '
             f"{', '.join(PROTOCOLS)}"
         )
     if not isinstance(protocol, str) or protocol not in PROTOCOLS:
         near = difflib.get_close_matches(str(protocol), PROTOCOLS, n=1)
         hint = f"did you mean {near[0]!r}? " if near else ""
         raise TorsadeError(
-            f"{name} has protocol {quoted(protocol)}, which is unknown; {hint}choose one of "
+            f"{where} has protocol {quoted(protocol)}, which is unknown; {hint}choose one of "
             f"{', '.join(PROTOCOLS)}"
         )
-    centerline = fields.get("centerline")
-    if isinstance(centerline, str) and (path.parent / centerline).is_file():
-        fields["centerline"] = str(path.parent / centerline)
-    return fields
+    return PROTOCOLS[protocol]
+
+
+def beside(path: str | Path, centerline: Any) -> Any:
+    """A file of nodes that a TOML file names: beside that, where it lies there."""
+    found = isinstance(centerline, str) and (Path(path).parent / centerline).is_file()
+    return str(Path(path).parent / centerline) if found else centerline
 
 
 def merged(fields: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
