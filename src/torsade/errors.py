@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 
 class TorsadeError(ValueError):
@@ -25,6 +26,13 @@ def quoted(value: object, longest: int = 60) -> str:
         return f"a whole number of {int(value.bit_length() * math.log10(2)) + 1} digits"
     text = repr(value)
     return text if len(text) <= longest else text[: longest - 4] + "..." + text[-1]
+
+
+def listed(words: Sequence[str], between: str = " ", most: int = 12) -> str:
+    """Words in a sentence, the first ones of many."""
+    if len(words) <= most:
+        return between.join(words)
+    return f"{between.join(words[:most])}{between}and {len(words) - most} more"
 
 
 def counted(number: int, what: str) -> str:

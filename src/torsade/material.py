@@ -14,7 +14,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted
 
 __all__ = ["MATERIALS", "Material", "Preset", "Section", "named_material", "preset"]
 
@@ -180,7 +180,7 @@ def preset(name: str) -> Preset:
 
     near = get_close_matches(str(name).lower(), MATERIALS, n=1, cutoff=0.6)
     hint = f"did you mean {near[0]!r}? " if near else ""
-    raise TorsadeError(f"unknown material {name!r}; {hint}choose one of {', '.join(sorted(MATERIALS))}")
+    raise TorsadeError(f"unknown material {quoted(name)}; {hint}choose one of {', '.join(sorted(MATERIALS))}")
 
 
 def named_material(name: str) -> Material:

@@ -41,8 +41,10 @@ __all__ = [
     "Torque",
     "Velocity",
     "Viscosity",
+    "bearable",
     "exact",
     "indefinite",
+    "is_bearable",
     "metres",
     "quantity",
 ]
@@ -63,6 +65,11 @@ class _Measure(NamedTuple):
 
     factor: Fraction
     exponents: Exponents
+
+    @property
+    def digits(self) -> int:
+        """Binary digits of the factor."""
+        return self.factor.numerator.bit_length() + self.factor.denominator.bit_length()
 
     def times(self, other: _Measure, power: int = 1) -> _Measure:
         a, b = self.exponents, other.exponents
@@ -149,6 +156,10 @@ _SUPERSCRIPT = re.compile("[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹]")
 _PLAIN_DIGITS = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
 _LONGEST_TEXT = 100
 _HIGHEST_POWER = 9
+_MOST_DIGITS = 10_000  # of what is raised to a power: ((m^9)^9)^9 ... would fill the memory
+
+LEAST, GREATEST = 1e-30, 1e30
+"""Sizes in SI units between which lies what can be computed with: products of a few do not overflow."""
 
 
 def quantity(value: str | float, dimension: str) -> float:
@@ -191,6 +202,25 @@ def _read(value: str | float, dimension: str) -> Fraction | float:
     if isinstance(value, Real) and not isinstance(value, bool):
         return value
     raise QuantityError(f"{quoted(value)} is not a number; {_advice(wanted)}")
+
+
+def is_bearable(value: float) -> bool:
+    """Whether the size of a number in SI units is 0 or between `LEAST` and `GREATEST`."""
+    return value == 0 or LEAST <= abs(value) <= GREATEST
+
+
+def bearable(value: str | float, dimension: str) -> float:
+    """Return `value` in SI units, as `quantity` reads it, if it is bearable.
+
+    Raises:
+        TorsadeError: as `quantity`; or it is so large or small that numbers made of it overflow.
+    """
+    result = quantity(value, dimension)
+    if not is_bearable(result):
+        unit = DIMENSIONS[dimension].unit
+        between = f"between {LEAST:g} and {GREATEST:g} {unit}".rstrip()
+        raise QuantityError(f"{quoted(value)} is beyond what can be computed with; give a size {between}")
+    return result
 
 
 def metres(name: str, value: float | str) -> float:
@@ -275,6 +305,8 @@ def _read_power(tokens: list[str]) -> _Measure:
     power = tokens.pop() if tokens else ""
     if not power.lstrip("+-").isdecimal() or abs(int(power)) > _HIGHEST_POWER:
         raise _unreadable(f"^{power}")
+    if base.digits > _MOST_DIGITS:
+        raise ValueError("powers of powers that nothing has")
     return _ONE.times(base, int(power))
 
 
@@ -313,7 +345,7 @@ def _advice(wanted: Dimension) -> str:
 
 def _reads(dimension: str) -> BeforeValidator:
     """A pydantic validator that reads `dimension`."""
-    return BeforeValidator(lambda value: quantity(value, dimension))
+    return BeforeValidator(lambda value: bearable(value, dimension))
 
 
 # Annotated types for pydantic models: ``radius: Length = 2e-4``. The `Dimension` in the metadata

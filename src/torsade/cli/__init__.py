@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import errno
+import io
 import os
 import sys
 from collections.abc import Sequence
 
 from torsade.cli.messages import say
-from torsade.errors import TorsadeError, reason_of
+from torsade.errors import TorsadeError, quoted, reason_of
 from torsade.stopping import exit_code, sigterm_stops
 
 __all__ = ["main"]
@@ -17,6 +19,9 @@ BAD_INPUT = 2
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit."""
+    # A file's name need not be text, nor every terminal know every letter.
+    if isinstance(sys.stdout, io.TextIOWrapper) and sys.stdout.errors == "strict":
+        sys.stdout.reconfigure(errors="backslashreplace")
     with sigterm_stops():
         code = _status(sys.argv[1:] if arguments is None else list(arguments))
     sys.exit(code)
@@ -49,6 +54,9 @@ def _status(arguments: list[str]) -> int:
         _silence()
         return 1
     except OSError as error:
+        if error.errno == errno.ENAMETOOLONG:
+            say(f"{quoted(str(error.filename))} is too long for the name of a file; give a shorter one")
+            return BAD_INPUT
         if error.filename is not None:
             raise  # of a file that somebody should have looked after
         _silence()

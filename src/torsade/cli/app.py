@@ -12,6 +12,7 @@ from cyclopts import App, Group, Parameter
 from torsade import __version__
 from torsade.cli import fracture_app, results_app, sweep_app
 from torsade.cli.knots_app import knots_app
+from torsade.cli.messages import shown
 from torsade.cli.movie_app import add_command as add_movie
 from torsade.errors import TorsadeError
 
@@ -157,7 +158,7 @@ def with_protocol(arguments: list[str]) -> list[str]:
 
         known = " or ".join(f"torsade run {name}" for name in PROTOCOLS)
         option = arguments[1].partition("=")[0]
-        raise TorsadeError(f"{option} comes without a protocol; begin with {known}")
+        raise TorsadeError(f"{shown(option)} comes without a protocol; begin with {known}")
     if not path:
         raise TorsadeError("--spec has no value; give a TOML file after it, such as --spec reef.toml")
     from torsade.protocols.files import read_fields

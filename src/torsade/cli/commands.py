@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from torsade import places
 from torsade.cli.messages import say
-from torsade.errors import TorsadeError, reason_of
+from torsade.errors import TorsadeError, quoted, reason_of
 from torsade.protocols.base import Driven, Progress
 from torsade.protocols.files import PROTOCOLS, merged, read_fields
 from torsade.protocols.prison_escape import PrisonEscape
@@ -85,7 +85,7 @@ def _demo_files(out: str, spec: Spec) -> tuple[str, str, str]:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise TorsadeError(
-            f"cannot make the folder {out!r} ({reason_of(error)}); give another --out"
+            f"cannot make the folder {quoted(out, 200)} ({reason_of(error)}); give another --out"
         ) from None
     target, *drawings = (folder / name for name in ("reef.zarr", "reef.png", "reef-separation.png"))
     found = [places.attributes(path) for path in (target, places.part_of(target))]
@@ -122,22 +122,26 @@ def check_drawings(picture: str | None, plot: str | None, movie: str | None = No
             continue
         if not _can(module):
             raise TorsadeError(
-                f"{path!r} needs {module}, which is not installed; install it with {INSTALL_VIEW}"
+                f"{quoted(path, 200)} needs {module}, which is not installed; install it with {INSTALL_VIEW}"
             )
         if Path(path).suffix.lower() not in endings:
-            raise TorsadeError(f"cannot draw to {path!r}; give a name that ends in {' or '.join(endings)}")
+            raise TorsadeError(
+                f"cannot draw to {quoted(path, 200)}; give a name that ends in {' or '.join(endings)}"
+            )
         if Path(path).is_dir():
-            raise TorsadeError(f"{path!r} is a folder; give the name of a file in it")
+            raise TorsadeError(f"{quoted(path, 200)} is a folder; give the name of a file in it")
         try:
             with tempfile.TemporaryFile(dir=Path(path).parent):
                 pass
         except OSError as error:
             raise TorsadeError(
-                f"cannot write {path!r} ({reason_of(error)}); give a file in a folder that exists and can be "
-                "written"
+                f"cannot write {quoted(path, 200)} ({reason_of(error)}); give a file in a folder that exists "
+                "and can be written"
             ) from None
     if picture is not None and plot is not None and Path(picture).resolve() == Path(plot).resolve():
-        raise TorsadeError(f"--picture and --plot are both {picture!r}; give each a file of its own")
+        raise TorsadeError(
+            f"--picture and --plot are both {quoted(picture, 200)}; give each a file of its own"
+        )
 
 
 def _can(module: str) -> bool:

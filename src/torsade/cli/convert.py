@@ -10,7 +10,7 @@ from typing import Any
 
 from torsade import curve
 from torsade.centerline import Centerline
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted
 from torsade.files import read_centerline, write_centerline
 from torsade.files.centerlines import format_of
 
@@ -34,7 +34,9 @@ def convert(
     read = read_centerline(given, length_unit)
     written, scale = read, 0.0
     if not re.fullmatch(r"\d{1,6}", every.strip(), re.A):
-        raise TorsadeError(f"--every is {every!r}; give a whole number, such as 4 for every fourth node")
+        raise TorsadeError(
+            f"--every is {quoted(every)}; give a whole number such as 4, for every fourth node"
+        )
     if smooth is not None or spacing is not None or int(every) != 1:
         from torsade.knots.measured import clean
 

@@ -11,7 +11,7 @@ from typing import Any
 from torsade import curve
 from torsade.cli.codes import codes_of
 from torsade.cli.table import print_file, print_rows
-from torsade.errors import TorsadeError, counted
+from torsade.errors import TorsadeError, counted, quoted
 from torsade.knots.entries import KINDS, Entry, facts
 from torsade.knots.finding import interpret, search
 from torsade.topology.counting import pull_choices, state
@@ -31,7 +31,8 @@ def list_knots(text: str, kind: str | None, json: bool) -> int:
         return 0
     if not found:
         raise TorsadeError(
-            f"nothing has {text!r} in its name; leave it out to see all, or give part of a name such as fish"
+            f"nothing has {quoted(text)} in its name; leave it out to see all, or give part of a name such "
+            "as fish"
         )
     for kind_found in dict.fromkeys(entry.kind for entry in found):
         print(f"{kind_found}: {KINDS[kind_found]}")

@@ -32,6 +32,9 @@ TRACK = (
     Column("length", "length", "mm", required=True, aliases=("rod_length",)),
     Column("sample", ""),
 )
+MOST_POINTS = 20_000
+"""Most points of all tracks: their fit takes seconds."""
+
 MASSES = Kind("samples", "masses.csv", "a table of samples", "split it", "one sample")
 ANGLES = Kind("angles", "pendulum.csv", "a track", "take every few points", "one angle")
 
@@ -118,7 +121,12 @@ def _above(row: Row, name: str) -> float:
 def _tracks(path: str) -> dict[str, tuple[list[float], list[float], float]]:
     """Times, angles and length of the rod of each pendulum."""
     found: dict[str, tuple[list[float], list[float], float]] = {}
-    for row in read_table(Path(path), TRACK, ANGLES).rows:
+    rows = read_table(Path(path), TRACK, ANGLES).rows
+    if len(rows) > MOST_POINTS:
+        raise TorsadeError(
+            f"{path!r} has {len(rows)} points; take every few of them, {MOST_POINTS} at most in all"
+        )
+    for row in rows:
         length = _above(row, "length")
         name = str(row.cells.get("sample") or "1")
         times, angles, first = found.setdefault(name, ([], [], length))

@@ -9,10 +9,12 @@ from collections.abc import Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
+from torsade.errors import quoted
+
 if TYPE_CHECKING:
     from cyclopts import CycloptsError
 
-__all__ = ["first_words", "parse_error", "say"]
+__all__ = ["first_words", "parse_error", "say", "shown"]
 
 
 class _Command(NamedTuple):
@@ -144,6 +146,8 @@ def _command(arguments: Sequence[str]) -> str | None:
 def say(message: str) -> None:
     """Print one sentence on the standard error stream."""
     sentence = " ".join(message.split()).removesuffix(".")
+    # What a file or an argument holds must not steer the terminal.
+    sentence = "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in sentence)
     print(f"torsade: {sentence}{'' if sentence.endswith('?') else '.'}", file=sys.stderr)
 
 
@@ -163,18 +167,23 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
             from torsade.files import SUFFIXES
 
             option = "--centerline" if unused[0].lower().endswith(SUFFIXES) else "--knot"
-            return f"{unused[0]!r} comes without its option; did you mean {option} {unused[0]}?"
+            return f"{quoted(unused[0])} comes without its option; did you mean {option} {shown(unused[0])}?"
         return (
-            f"{unused[0]!r} belongs to no option; give every value after its option, and quote values with "
-            'units, such as --force "15 N"'
+            f"{quoted(unused[0])} belongs to no option; give every value after its option, and quote values "
+            'with units, such as --force "15 N"'
         )
     if kind == "MissingArgumentError":
-        last = next((a for a in reversed(arguments) if a.startswith("--")), "an option")
+        last = shown(next((a for a in reversed(arguments) if a.startswith("--")), "an option"))
         return f"{last} has no value; give one after it, such as {last} VALUE"
     if kind == "RepeatArgumentError":
         return f"{token or 'an option'} is given more than once; give it once"
     text = " ".join(str(error).split()).rstrip(".")
     return text.replace(". ", "; ") + "; see torsade --help"
+
+
+def shown(word: str) -> str:
+    """A word as it was typed, or quoted where it is long or strange."""
+    return word if re.fullmatch(r"[\w./=-]{1,60}", word) and word.isprintable() else quoted(word)
 
 
 def _about(command: _Command, kind: str, unused: Sequence[str], arguments: Sequence[str]) -> str:
@@ -185,14 +194,14 @@ def _about(command: _Command, kind: str, unused: Sequence[str], arguments: Seque
         return "an option is given more than once; give each once"
     if unused and unused[0].startswith("--"):
         return _unknown_option(unused[0].partition("=")[0], arguments)
-    return command.more.format(repr(unused[0])) if unused else command.nothing
+    return command.more.format(quoted(unused[0])) if unused else command.nothing
 
 
 def _unknown_option(option: str, arguments: Sequence[str]) -> str:
     from torsade.cli.app import OPTIONS, flag
     from torsade.protocols.files import PROTOCOLS
 
-    command = " ".join(["torsade", *(a for a in arguments[:2] if not a.startswith("-"))])
+    command = " ".join(["torsade", *(shown(a) for a in arguments[:2] if not a.startswith("-"))])
     known = ["--help", "--version"]
     if arguments[:1] == ["demo"]:
         known = ["--out", "--json", "--help"]
@@ -208,7 +217,7 @@ def _unknown_option(option: str, arguments: Sequence[str]) -> str:
         known = [flag(k) for k in spec.model_fields if k != "protocol"] + [flag(k) for k in OPTIONS]
     near = difflib.get_close_matches(option, known, n=1, cutoff=0.6)
     hint = f"did you mean {near[0]}?" if near else f"see {command} --help"
-    return f"{command.removeprefix('torsade ')} has no option {option}; {hint}"
+    return f"{command.removeprefix('torsade ')} has no option {shown(option)}; {hint}"
 
 
 def _unknown_command(word: str, arguments: Sequence[str]) -> str:
@@ -219,14 +228,14 @@ def _unknown_command(word: str, arguments: Sequence[str]) -> str:
             return f"{word!r} is not a protocol; give a file with --spec {word}"
         near = difflib.get_close_matches(word, PROTOCOLS, n=1)
         hint = f"did you mean {near[0]!r}? " if near else ""
-        return f"there is no protocol {word!r}; {hint}choose one of {', '.join(PROTOCOLS)}"
+        return f"there is no protocol {quoted(word)}; {hint}choose one of {', '.join(PROTOCOLS)}"
     if word in PROTOCOLS:
         return f"{word!r} is a protocol; give torsade run {word}"
     if arguments[:1] == ["knots"] and word != "knots":
-        return f"there is no command 'knots {word}'; choose knots list, knots show or knots build"
+        return f"there is no command {quoted('knots ' + word)}; choose knots list, knots show or knots build"
     first = first_words()
     near = difflib.get_close_matches(word, [*first, "--help", "--version"], n=1)
     known = f"choose {', '.join(first[:-1])} or {first[-1]}, or see torsade --help"
     hint = f"did you mean {near[0]!r}?" if near else known
     what = "option" if word.startswith("-") else "command"
-    return f"there is no {what} {word!r}; {hint}"
+    return f"there is no {what} {quoted(word)}; {hint}"

@@ -27,14 +27,16 @@ def make(
     from torsade.results import Result
     from torsade.view import film
 
-    path = str(Path(result).with_suffix(".mp4")) if out is None else out
     lasting, rate = _number("--seconds", seconds, "8"), _number("--fps", fps, "30")
     asked = _pair("--size", size, r"(\d{1,5})[x×](\d{1,5})", "1280x720")
     between = None if frames is None else _pair("--frames", frames, r"(-?\d{1,9}):(-?\d{1,9})", "0:80")
     if colour is not None and colour not in film.COLOURS:
         raise TorsadeError(f"--colour is {quoted(colour)}; give one of {', '.join(film.COLOURS)}")
-    check_drawings(None, None, path)
     dataset = Result.open(result).dataset
+    # A result may be the present folder, whose name only the system knows.
+    named = Path(result) if Path(result).name else Path(result).resolve()
+    path = str(named.with_suffix(".mp4")) if out is None else out
+    check_drawings(None, None, path)
     try:
         with progress(json) as shown:
             film.movie(

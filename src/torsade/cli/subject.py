@@ -74,7 +74,8 @@ def subject(given: str, length_unit: str = "m", direction: str | None = None) ->
         return _file(given, length_unit, direction)
     if direction is not None:
         raise TorsadeError(
-            f"--direction is {direction!r}, but {quoted(text)} is a drawing already; give it with a file"
+            f"--direction is {quoted(direction)}, but {quoted(text)} is a drawing already; give it with a "
+            "file"
         )
     if code_kind(text) is None and re.search(r"[\[\]{}|;:*]", text):
         raise TorsadeError(

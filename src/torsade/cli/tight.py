@@ -14,7 +14,7 @@ from torsade.centerline import Centerline
 from torsade.cli.commands import check_drawings, progress
 from torsade.cli.messages import say
 from torsade.cli.subject import subject
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted
 from torsade.files import write_centerline
 from torsade.knots.loose import listed_ropelength, loose_diagram, loose_knot
 from torsade.knots.tight import Interrupted, TightKnot, tighten
@@ -102,7 +102,7 @@ def _curves(given: str) -> list[Any]:
         return list(shape.strands)
     if asked.diagram.ends:
         raise TorsadeError(
-            f"{given!r} has open strands; give a knot or link such as 3_1 or L5a1, the code of "
+            f"{quoted(given)} has open strands; give a knot or link such as 3_1 or L5a1, the code of "
             "one, or a CSV file"
         )
     return loose_knot(given) if asked.kind in ("closed", "link") else loose_diagram(asked.diagram)
@@ -121,14 +121,14 @@ def _number(option: str, text: str | None, example: str) -> float | None:
     try:
         return float(text)
     except ValueError:
-        raise TorsadeError(f"{option} is {text!r}; give a number such as {example}") from None
+        raise TorsadeError(f"{option} is {quoted(text)}; give a number such as {example}") from None
 
 
 def _whole(option: str, text: str | None) -> int | None:
     if text is None:
         return None
     if not re.fullmatch(r"\d{1,5}", text.strip(), re.A):
-        raise TorsadeError(f"{option} is {text!r}; give a whole number such as 20")
+        raise TorsadeError(f"{option} is {quoted(text)}; give a whole number such as 20")
     return int(text)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from torsade.cli.codes import codes_of
 from torsade.cli.subject import Subject, subject
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, listed, quoted
 from torsade.topology.codes import to_pd
 from torsade.topology.counting import State, circulation_range, pull_choices, state
 from torsade.topology.diagram import Diagram
@@ -54,7 +54,9 @@ def topology(
 
 def _drawings(text: str) -> int:
     if not re.fullmatch(r"\d{1,6}", text.strip(), re.A):
-        raise TorsadeError(f"--drawings is {text!r}; give a whole number from 0 to 999999, such as 2000")
+        raise TorsadeError(
+            f"--drawings is {quoted(text)}; give a whole number from 0 to 999999, such as 2000"
+        )
     return int(text)
 
 
@@ -99,7 +101,7 @@ def _pulled(given: Subject, pulled: str | None) -> str | None:
     """The names of the pulled ends, in the order of strands."""
     if not given.diagram.ends:
         if pulled is not None:
-            raise TorsadeError(f"--pulled is {pulled!r}, but all strands are closed; leave it out")
+            raise TorsadeError(f"--pulled is {quoted(pulled)}, but all strands are closed; leave it out")
         return None
     if pulled is None:
         return given.pulled or "".join(next(pull_choices(given.diagram)))
@@ -108,8 +110,8 @@ def _pulled(given: Subject, pulled: str | None) -> str | None:
     tips = sorted(given.diagram.ends)
     pairs = list(zip(tips[::2], tips[1::2], strict=True))
     if sum(map(len, names)) != len(text) or not _is_choice(names, pairs):
-        choices = " and ".join(" or ".join(two) for two in pairs)
-        raise TorsadeError(f"--pulled is {pulled!r}; give one of each open strand, {choices}")
+        choices = listed([" or ".join(two) for two in pairs], " and ")
+        raise TorsadeError(f"--pulled is {quoted(pulled)}; give one of each open strand, {choices}")
     return "".join(names)
 
 

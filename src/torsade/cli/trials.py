@@ -17,7 +17,7 @@ from torsade.fracture.statistics import Mean, Share
 from torsade.fracture.theory.bending_wave import AMPLIFICATION
 from torsade.fracture.trials import Trials, read_trials
 from torsade.material import named_material
-from torsade.units import quantity
+from torsade.units import bearable
 
 __all__ = ["number_of", "report", "trials"]
 
@@ -73,7 +73,7 @@ def trials(
 def number_of(option: str, text: str, dimension: str) -> float:
     """The value of an option, above 0, in SI units."""
     try:
-        value = quantity(text, dimension)
+        value = bearable(text, dimension)
     except QuantityError as error:
         raise TorsadeError(f"{option} {error}") from None
     if value <= 0:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 from torsade.errors import QuantityError, TorsadeError, quoted
 from torsade.files.csv_table import SEPARATORS, cells_of
 from torsade.files.regular import Kind, finite_number, lines
-from torsade.units import quantity
+from torsade.units import is_bearable, quantity
 
 __all__ = ["MOST_ROWS", "Column", "Row", "Table", "read_table"]
 
@@ -211,16 +211,16 @@ def _row(cells: Sequence[str], headings: Sequence[_Heading | None], where: str) 
                 raise TorsadeError(
                     f"{where} has {len(parts)} numbers in {heading.text}; give at most {MOST_NUMBERS}"
                 )
-            numbers = tuple(heading.factor * _number(part, heading, where) for part in parts)
+            numbers = tuple(_number(part, heading, where) for part in parts)
             before = found.get(column.name)
             found[column.name] = (*(before if isinstance(before, tuple) else ()), *numbers)
         else:
-            found[column.name] = heading.factor * _number(cell, heading, where)
+            found[column.name] = _number(cell, heading, where)
     return found
 
 
 def _number(cell: str, heading: _Heading, where: str) -> float:
-    """A number; what follows it, as a unit may, is said to belong into the heading."""
+    """A number in SI units; what follows it, as a unit may, is said to belong into the heading."""
     with_unit = re.fullmatch(r"([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*([^\W\d_°%]+|°|%)", cell)
     if with_unit and cell.lower().lstrip("+-") not in ("nan", "inf", "infinity"):
         raise TorsadeError(
@@ -232,4 +232,9 @@ def _number(cell: str, heading: _Heading, where: str) -> float:
             f"{where} has {heading.text} = {quoted(cell, 40)}; write decimals with a point, such as "
             f"{cell.replace(',', '.')[:20]}"
         )
-    return finite_number(cell, heading.text, where)
+    value = heading.factor * finite_number(cell, heading.text, where)
+    if not is_bearable(value):
+        raise TorsadeError(
+            f"{where} has {heading.text} = {quoted(cell, 40)}, beyond what can be computed with; check it"
+        )
+    return value

@@ -129,6 +129,7 @@ def _array(stream: BinaryIO | IO[bytes], what: str) -> NDArray[Any]:
         raise TorsadeError(f"{what} holds pickled objects, which are not read; give an array of numbers")
     if dtype.kind not in "fiub" or dtype.subdtype is not None:
         raise TorsadeError(f"{what} has {quoted(str(dtype))}; give an array of real numbers")
+    shape = tuple(map(int, shape))  # numpy takes True for a number here, and not below
     count = math.prod(shape)
     if not all(0 <= n <= 3 * MOST_NODES for n in shape) or count > 3 * MOST_NODES:
         raise TorsadeError(f"{what} has shape {quoted(shape)}; give at most {MOST_NODES} nodes")

@@ -18,6 +18,9 @@ Floats = NDArray[np.float64]
 FEWEST = 12
 """Fewest points of a track."""
 
+FASTEST = 200.0
+"""Decay or growth over a track, as a logarithm, beyond which the search for it is not followed."""
+
 
 class Swing(NamedTuple):
     """theta = rest + amplitude exp(-decay t) cos(omega t + phase), t from the first point.
@@ -53,7 +56,7 @@ def fit_swing(time: ArrayLike, angle: ArrayLike) -> Swing:
     Raises
     ------
     TorsadeError
-        When the track is too short, does not move, or shows less than one oscillation.
+        When the track is too short, does not move, shows less than one oscillation, or too little of each.
     """
     t, theta = np.asarray(time, dtype=np.float64), np.asarray(angle, dtype=np.float64)
     if len(t) < FEWEST:
@@ -83,7 +86,12 @@ def fit_swing(time: ArrayLike, angle: ArrayLike) -> Swing:
     freedom = len(t) - 5
     variance = float((residuals**2).sum()) / freedom
     slopes = np.asarray(best.jac, dtype=np.float64)
-    errors = np.sqrt(variance * np.diag(np.linalg.inv(slopes.T @ slopes)))
+    try:
+        errors = np.sqrt(variance * np.diag(np.linalg.inv(slopes.T @ slopes)))
+    except np.linalg.LinAlgError:
+        raise TorsadeError(
+            "a pendulum's track does not tell its frequency and decay; give several points of every swing"
+        ) from None
     return Swing(
         omega=omega,
         decay=decay,
@@ -97,7 +105,7 @@ def fit_swing(time: ArrayLike, angle: ArrayLike) -> Swing:
 
 def _linear(t: Floats, theta: Floats, p: Floats) -> tuple[Floats, Floats]:
     """Coefficients of cos, sin and 1 for given frequency and decay, and the residuals."""
-    envelope = np.exp(-p[1] * t)
+    envelope = np.exp(np.clip(-p[1] * t, -FASTEST, FASTEST))
     columns = np.column_stack([envelope * np.cos(p[0] * t), envelope * np.sin(p[0] * t), np.ones(len(t))])
     c = np.linalg.lstsq(columns, theta, rcond=None)[0]
     return c, theta - columns @ c

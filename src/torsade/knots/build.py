@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from torsade import curve
 from torsade.centerline import Centerline
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, listed, quoted
 from torsade.knots.drawing import SPACING, SPACING_RANGE, in_radii, known_radius
 from torsade.knots.placing import placed
 from torsade.knots.reading import reads_as
@@ -124,10 +124,10 @@ def _known_pull(diagram: Diagram, pulled: str | None) -> str | None:
     usable = n_open in (1, 2) and _hasusual_ends(diagram)
     fits = len(names) == 2 and set(names) <= set(diagram.ends) and len({name[:1] for name in names}) == n_open
     if not usable or not fits:
-        has = f"ends {' '.join(diagram.ends)}" if diagram.ends else "no ends"
+        has = f"ends {listed(diagram.ends)}" if diagram.ends else "no ends"
         raise TorsadeError(
-            f"pulled ends are {pulled!r} of a diagram with {has}; give the clamped, then the pulled end, "
-            'one of each of two open strands, such as "A1B1", or both of one'
+            f"pulled ends are {quoted(pulled)} of a diagram with {has}; give the clamped, then the pulled "
+            'end, one of each of two open strands, such as "A1B1", or both of one'
         )
     return "".join(names)
 

@@ -20,6 +20,9 @@ __all__ = ["bend_diagram", "bend_names", "find", "interpret", "known_bend", "kno
 
 _SUTURE = r"\(?\s*([+-]?\d{1,6})\s*,\s*([+-]?\d{1,6})\s*\)?"
 
+LONGEST_NAME = 5000
+"""Longest name [characters], of a sum of 500 knots."""
+
 LARGEST = 99
 """Largest number in the name of a torus knot or an overhand knot."""
 
@@ -44,10 +47,16 @@ def find(name: str) -> Entry:
         TorsadeError: nothing is called so; the sentence says which name is nearest.
     """
     text = name.strip()
+    if len(text) > LONGEST_NAME:
+        raise TorsadeError(f"a name of {len(text)} characters is given; give at most {LONGEST_NAME}")
     plain = _plain(text)
     if plain in _known():
         return _known()[plain]
     if match := re.fullmatch(r"mirror(?: image)?(?: of)?(?: the)? (.+)", plain):
+        if match[1].startswith("mirror "):
+            raise TorsadeError(
+                f"{quoted(text)} is mirrored more than once; give mirror once, or leave it out"
+            )
         return _mirrored(find(match[1] if match[1] in _known() else text[-len(match[1]) :]))
     found = _by_pattern(text)
     if found is None:
@@ -206,7 +215,7 @@ def _mirrored(entry: Entry) -> Entry:
 
 def _by_pattern(text: str) -> Entry | None:
     """Names that are made by a rule."""
-    if match := re.fullmatch(r"T\s*\(?\s*([+-]?\d+)\s*[,;]\s*([+-]?\d+)\s*\)?", text, re.I):
+    if match := re.fullmatch(r"T\s*\(?\s*([+-]?\d{1,9})\s*[,;]\s*([+-]?\d{1,9})\s*\)?", text, re.I | re.A):
         p, q = int(match[1]), int(match[2])
         if not (
             p
@@ -215,10 +224,10 @@ def _by_pattern(text: str) -> Entry | None:
             and (min(abs(p), abs(q)) - 1) * max(abs(p), abs(q)) < 1000
         ):
             raise TorsadeError(
-                f"{text} is asked for; give T(p,q) with p and q not 0 and fewer than 1000 crossings"
+                f"{quoted(text)} is asked for; give T(p,q) with p and q not 0 and fewer than 1000 crossings"
             )
         return torus(p, q)
-    if match := re.fullmatch(r"overhand[\s_-]*(\d+)", text, re.I):
+    if match := re.fullmatch(r"overhand[\s_-]*(\d{1,9})", text, re.I | re.A):
         n = int(match[1])
         if n % 2 == 0 or not 3 <= n <= LARGEST:
             raise TorsadeError(
@@ -228,6 +237,8 @@ def _by_pattern(text: str) -> Entry | None:
     if match := re.fullmatch(_SUTURE, text, re.A):
         return suture(int(match[1]), int(match[2]))
     if match := re.fullmatch(r"open[\s_-]+(.+)", text, re.I):
+        if re.search(r"\bopen ", _plain(match[1])):
+            raise TorsadeError(f"{quoted(text)} is cut open more than once; give open once")
         closed = find(match[1])
         if closed.kind != "closed":
             raise TorsadeError(

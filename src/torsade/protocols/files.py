@@ -13,7 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from torsade.errors import TorsadeError, quoted, reason_of
+from torsade.errors import TorsadeError, quoted
 from torsade.protocols.base import Spec
 from torsade.protocols.bend_twist import BendTwist
 from torsade.protocols.pendulum import Pendulum
@@ -37,6 +37,9 @@ PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
     }
 )
 """The specification of every protocol, by name."""
+
+LARGEST = 2**16
+"""Largest specification read [bytes]: a key of very many parts takes a time that goes as their square."""
 
 _REPLACES = MappingProxyType(
     {
@@ -81,17 +84,25 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     TorsadeError
         When the file is missing, cannot be read or is not TOML.
     """
+    from torsade.files.regular import Kind, opened
+
     name = repr(str(path))
+    kind = Kind("fields", "reef.toml", "a specification", "leave out what is no field", "one field")
+    with opened(Path(path), kind) as (file, _):
+        content = file.read(LARGEST + 1)
+    if len(content) > LARGEST:
+        raise TorsadeError(f"{name} has more than {LARGEST} bytes; give a TOML specification")
     try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
-    except FileNotFoundError:
-        raise TorsadeError(f"there is no file {name}; give the path of a TOML specification") from None
-    except (OSError, ValueError, RecursionError) as error:
-        if isinstance(error, tomllib.TOMLDecodeError | RecursionError):
-            reason = str(error).rstrip(".")
-            raise TorsadeError(f'{name} is not TOML: {reason}; write lines such as force = "15 N"') from None
-        reason = reason_of(error) if isinstance(error, OSError) else "not text in UTF-8"
-        raise TorsadeError(f"cannot read {name} ({reason}); give a TOML specification") from None
+        return tomllib.loads(content.decode("utf-8-sig"))
+    except RecursionError:
+        raise TorsadeError(
+            f"{name} has brackets too deep within each other; give a TOML specification"
+        ) from None
+    except tomllib.TOMLDecodeError as error:
+        reason = str(error).rstrip(".")
+        raise TorsadeError(f'{name} is not TOML: {reason}; write lines such as force = "15 N"') from None
+    except UnicodeDecodeError:
+        raise TorsadeError(f"cannot read {name} (not text in UTF-8); give a TOML specification") from None
 
 
 def check_protocol(protocol: object, where: str) -> type[Spec]:

@@ -45,13 +45,14 @@ class Knotted(Pulled):
         """Refuse two shapes, or none, or a unit for none."""
         if self.knot is not None and self.centerline is not None:
             raise TorsadeError(
-                f"knot {self.knot!r} and centerline {self.centerline!r} are both given; give one of them"
+                f"knot {quoted(self.knot)} and centerline {quoted(self.centerline)} are both given; give one "
+                "of them"
             )
         if self.knot is None and self.centerline is None:
             raise TorsadeError(f"nothing to pull is given; {advice}")
         if self.knot is not None and self.length_unit is not None:
             raise TorsadeError(
-                f"length_unit {self.length_unit!r} belongs to a centerline; leave it out, or give one"
+                f"length_unit {quoted(self.length_unit)} belongs to a centerline; leave it out, or give one"
             )
         if self.knot is not None and self.smooth is not None:
             raise TorsadeError("a built-in knot needs no smoothing; leave smooth out, or give a centerline")

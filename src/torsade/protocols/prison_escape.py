@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted
 from torsade.protocols.base import Positive
 from torsade.protocols.knotted import Knotted
 from torsade.protocols.pulled import Experiment
@@ -91,7 +91,7 @@ class PrisonEscape(Knotted):
         ends = _ENDS.fullmatch(text.strip().upper())
         if ends is None or ends[1] == ends[3]:
             raise TorsadeError(
-                f"pulled ends {text!r} are not one end of each strand; give the clamped end, then the "
+                f"pulled ends {quoted(text)} are not one end of each strand; give the clamped end, then the "
                 'pulled end, such as "A1B1" or "A0B0"'
             )
         return ends[0]

@@ -74,7 +74,7 @@ def sentence_of_unknown(spec: type[Spec], name: str) -> str:
     known = [k for k in spec.model_fields if k != "protocol"]
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.6)
     hint = f"did you mean {near[0]!r}?" if near else f"choose among {', '.join(known)}"
-    return f"{spec.model_fields['protocol'].default} has no field {name!r}; {hint}"
+    return f"{spec.model_fields['protocol'].default} has no field {quoted(name)}; {hint}"
 
 
 def _expected(spec: type[Spec], name: str) -> str:

@@ -21,7 +21,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, listed, quoted
 from torsade.topology._ports import CIRCLE, oriented
 from torsade.topology.planar import PlanarMap
 
@@ -336,9 +336,9 @@ class Diagram(PlanarMap):
         tips = {k: (self.ends[self.starts[k]], self.ends[q]) for k, q in finish.items()}
         if len(wanted) != len(tips) or any(len(wanted & set(two)) != 1 for two in tips.values()):
             choices = (
-                " and ".join(" or ".join(sorted(two)) for two in tips.values()) or "none: all are closed"
+                listed([" or ".join(sorted(two)) for two in tips.values()], " and ") or "none: all are closed"
             )
-            raise TorsadeError(f"pulled ends are {ends!r}; give one of each open strand, {choices}")
+            raise TorsadeError(f"pulled ends are {quoted(ends)}; give one of each open strand, {choices}")
         return self.reverse(k for k, two in tips.items() if two[0] in wanted)
 
     def without_circles(self) -> Diagram:

@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from torsade.curve import perpendicular
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, listed
 from torsade.topology import tangle
 from torsade.topology.codes import from_gauss, to_pd
 from torsade.topology.diagram import Diagram
@@ -104,7 +104,7 @@ def identify(diagram: Diagram, patience: int = 100, handed: bool = True) -> Iden
     """
     if diagram.ends:
         raise TorsadeError(
-            f"the diagram has ends {' '.join(diagram.ends)}; only closed curves are knots: close it first, "
+            f"the diagram has ends {listed(diagram.ends)}; only closed curves are knots: close it first, "
             "or use `identify_open` on a curve"
         )
     if not handed:

@@ -8,6 +8,7 @@ from types import MappingProxyType
 
 from torsade.errors import TorsadeError, quoted
 from torsade.topology.codes import from_pd
+from torsade.topology.codes._limits import limited
 from torsade.topology.diagram import Diagram
 from torsade.topology.names import UNKNOT
 from torsade.topology.table import LINK_CROSSINGS, TABLE_CROSSINGS, contents
@@ -50,14 +51,18 @@ def named_diagram(name: str) -> Diagram:
     (1, 1, 1, -1, -1, -1)
 
     Raises:
-        TorsadeError: a name that is not in the table.
+        TorsadeError: a name that is not in the table, or a sum of more than 500 crossings.
     """
-    return reduce(connected_sum, [_factor(_plain(part), name) for part in name.split("#")])
+    parts = name.split("#")
+    limited(len(parts), "summands", "sum")
+    factors = [_factor(_plain(part), name) for part in parts]
+    limited(sum(factor.n_crossings for factor in factors), "crossings", "sum")
+    return reduce(connected_sum, factors)
 
 
 def _plain(part: str) -> str:
     """A word of `COMMON_NAMES` without what may follow it, or the part as it is."""
-    word = re.sub(r"[\s_-]+(knot|link|rings)$", "", part.strip().lower())
+    word = re.sub(r"(?<![\s_-])[\s_-]+(knot|link|rings)$", "", part.strip().lower())
     return word if word in COMMON_NAMES else part.strip()
 
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, listed
 from torsade.topology.diagram import CIRCLE, Diagram
 
 __all__ = [
@@ -199,7 +199,7 @@ def cut(diagram: Diagram, edge: int = 0) -> Diagram:
         TorsadeError: the diagram has ends, or no such edge.
     """
     if diagram.ends:
-        raise TorsadeError(f"the diagram has ends {' '.join(diagram.ends)}; give a closed one to cut")
+        raise TorsadeError(f"the diagram has ends {listed(diagram.ends)}; give a closed one to cut")
     if not diagram.edges and diagram.circles and edge == 0:
         starts = list(diagram.starts)
         starts[starts.index(CIRCLE)] = -2
@@ -237,7 +237,7 @@ def split(diagram: Diagram) -> tuple[Diagram, ...]:
         TorsadeError: the diagram has ends.
     """
     if diagram.ends:
-        raise TorsadeError(f"the diagram has ends {' '.join(diagram.ends)}; close it first")
+        raise TorsadeError(f"the diagram has ends {listed(diagram.ends)}; close it first")
     pieces = [_part(diagram, piece) for piece in diagram.pieces]
     return (*pieces, *[Diagram.circle()] * diagram.circles)
 

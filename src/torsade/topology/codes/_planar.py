@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, listed
 from torsade.topology.diagram import CIRCLE, Diagram, strand_name
 
 __all__ = ["drawn", "ends_around", "standing"]
@@ -36,7 +36,7 @@ def drawn(
     new = [place.get(p, p) for p in mate[: len(mate) - m]] + [place.get(mate[p], mate[p]) for p in order]
     diagram = Diagram.assemble(new, [place.get(s, s) for s in starts], [ends[p] for p in order])
     if diagram.genus:
-        where = f" with ends {' '.join(diagram.ends)} around it" if m else ""
+        where = f" with ends {listed(diagram.ends)} around it" if m else ""
         raise TorsadeError(
             f"the {what} cannot be drawn in the plane{where}: its graph needs a surface of genus "
             f"{diagram.genus}; check the order of labels, and the signs"

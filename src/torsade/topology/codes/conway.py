@@ -90,6 +90,12 @@ def numbers_are_apart(text: str) -> bool:
 
 def _check_numbers(text: str, code: str) -> None:
     """Refuse a code that is too large, or where 12 could be one number or two."""
+    strange = re.search(r"(?![0-9])\d", text)
+    if strange:
+        raise TorsadeError(
+            f"the Conway code {quoted(code)} has {strange[0]!r}, which is not understood; give numbers such "
+            "as '2 1 2'"
+        )
     apart = numbers_are_apart(text)
     long = re.search(r"\d\d+(?![\d*])", text)
     if long and not apart and re.search(r"[;)]\s+[\d(]", text):
@@ -100,7 +106,7 @@ def _check_numbers(text: str, code: str) -> None:
     numbers = re.findall(r"\d+" if apart else r"\d", text)
     signs = text.count("+") + text.count("-")
     limited(len(numbers), "numbers", "Conway code")
-    limited(sum(int(number[:9]) for number in numbers) + signs, "crossings", "Conway code")
+    limited(sum(int(number.lstrip("0")[:9] or 0) for number in numbers) + signs, "crossings", "Conway code")
     depth = 0
     for sign in text:
         depth += (sign == "(") - (sign == ")")
@@ -129,7 +135,8 @@ class _Parser:
     """Reads `sum = product (; product)* signs`, `product = (-? factor)+`, `factor = number | ( sum )`."""
 
     def __init__(self, text: str, code: str) -> None:
-        self.words: list[str] = re.findall(r"\d+|\S", text)
+        # Zeros before a number say nothing, and Python reads no number of 5000 digits.
+        self.words: list[str] = re.findall(r"\d+|\S", re.sub(r"(?<!\d)0+(?=\d)", "", text))
         self.code = code
         self.place = 0
 
@@ -186,7 +193,7 @@ class _Parser:
             return integer(int(self.take()))
         if self.word != "(":
             raise TorsadeError(
-                f"the Conway code {quoted(self.code)} has {repr(self.word) if self.word else 'its end'} "
+                f"the Conway code {quoted(self.code)} has {quoted(self.word) if self.word else 'its end'} "
                 "where a tangle is due; give numbers, sums such as '3;2' and products such as '(3;2)21'"
             )
         self.take()
@@ -199,7 +206,7 @@ class _Parser:
     def expect_end(self) -> None:
         if self.word:
             raise TorsadeError(
-                f"the Conway code {quoted(self.code)} has {self.word!r} where it should end; "
+                f"the Conway code {quoted(self.code)} has {quoted(self.word)} where it should end; "
                 "give tangles such as '2 1 2', '3;21;2-' or '(3;2)(21;2)'"
             )
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from torsade.errors import TorsadeError, quoted
+from torsade.errors import TorsadeError, listed, quoted
 from torsade.topology.codes._realize import realized, rows_of
 from torsade.topology.diagram import Diagram
 
@@ -68,7 +68,7 @@ def to_dt(diagram: Diagram) -> list[int] | list[list[int]]:
     [4, 8, 10, 2, 12, 6]
     """
     if diagram.ends:
-        raise TorsadeError(f"the diagram has ends {' '.join(diagram.ends)}; a DT code is for closed strands")
+        raise TorsadeError(f"the diagram has ends {listed(diagram.ends)}; a DT code is for closed strands")
     if diagram.circles and diagram.n_strands > 1:
         raise TorsadeError(
             "the diagram has a circle without crossings, which no DT code shows; take it away first"

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, listed, quoted
 from torsade.topology.codes._planar import drawn, standing
 from torsade.topology.diagram import CIRCLE, Diagram, strand_name
 from torsade.topology.moves import add_kink
@@ -31,7 +31,7 @@ def to_pd(diagram: Diagram, first: int = 1) -> list[tuple[int, int, int, int]]:
     [(1, 5, 2, 4), (3, 1, 4, 6), (5, 3, 6, 2)]
     """
     if diagram.ends:
-        raise TorsadeError(f"the diagram has ends {' '.join(diagram.ends)}; use `to_open_pd`, or close it")
+        raise TorsadeError(f"the diagram has ends {listed(diagram.ends)}; use `to_open_pd`, or close it")
     if diagram.n_strands == diagram.circles == 1:
         return []
     while diagram.circles:
@@ -108,14 +108,16 @@ def _ports(rows: list[tuple[Label, ...]]) -> dict[Label, list[int]]:
     ports: dict[Label, list[int]] = {}
     for c, row in enumerate(rows):
         if len(row) != 4:
-            raise TorsadeError(f"crossing {c} of the PD code has {len(row)} labels, {list(row)}; give four")
+            raise TorsadeError(
+                f"crossing {c} of the PD code has {len(row)} labels, {quoted(list(row))}; give four"
+            )
         for i, label in enumerate(row):
             ports.setdefault(label, []).append(4 * c + i)
     for label, places in ports.items():
         if len(places) > 2:
             raise TorsadeError(
-                f"label {label!r} occurs {len(places)} times in the PD code; give each edge a label of its "
-                "own, which occurs twice, or once if the edge has an end"
+                f"label {quoted(label)} occurs {len(places)} times in the PD code; give each edge a label of "
+                "its own, which occurs twice, or once if the edge has an end"
             )
     return ports
 
@@ -127,7 +129,7 @@ def _key(label: Label) -> tuple[int, str, int]:
     found = re.fullmatch(r"(\D*)(\d+)", label)
     if not found:
         raise TorsadeError(
-            f"label {label!r} of the PD code is not understood; give integers, or names such as 'A3'"
+            f"label {quoted(label)} of the PD code is not understood; give integers, or names such as 'A3'"
         )
     return len(found[1]), found[1], int(found[2])
 
@@ -162,7 +164,7 @@ def _starts(mate: list[int], m: int, labels: list[Label]) -> list[int]:
         if wrong:
             c = wrong[0] >> 2
             raise TorsadeError(
-                f"crossing {c} of the PD code, {labels[4 * c : 4 * c + 4]}, does not begin with its "
+                f"crossing {c} of the PD code, {quoted(labels[4 * c : 4 * c + 4])}, does not begin with its "
                 "incoming lower edge: along its strand the third label comes first; turn it by two places"
             )
         seen.update(entries)
