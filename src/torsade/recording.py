@@ -50,7 +50,7 @@ class Recording:
     def __init__(
         self,
         sizes: Mapping[str, int],
-        fixed: Mapping[str, tuple[str, NDArray[Any]]],
+        fixed: Mapping[str, tuple[str | tuple[str, ...], NDArray[Any]]],
         names: tuple[str, ...],
         attrs: dict[str, Any],
     ) -> None:
@@ -63,7 +63,7 @@ class Recording:
             )
             for name in names
         }
-        self._fixed = dict(fixed)
+        self._fixed = {name: (*value, _about(name)) for name, value in fixed.items()}
         self.attrs = attrs | {"created": _now(), "versions": versions(), "status": "running"}
         self.done = self.sampled = 0
         self.saved: dict[str, NDArray[Any]] | None = None
@@ -82,7 +82,7 @@ class Recording:
     def begin(
         cls,
         sizes: Mapping[str, int],
-        fixed: Mapping[str, tuple[str, NDArray[Any]]],
+        fixed: Mapping[str, tuple[str | tuple[str, ...], NDArray[Any]]],
         names: tuple[str, ...],
         attrs: dict[str, Any],
         derive: Callable[[dict[str, Floats]], dict[str, Floats]],
@@ -300,11 +300,19 @@ class Recording:
 
         variables: dict[str, Any] = {}
         for name, values in self._arrays.items():
-            dims, unit, meaning = VARIABLES[name]
+            dims = VARIABLES[name][0]
             cut = values if sizes is None else values[: sizes[dims[0]]]
-            variables[name] = (dims, cut, {"units": unit, "long_name": meaning})
+            variables[name] = (dims, cut, _about(name))
         time_axis = {"time": variables.pop("time")}
         return xarray.Dataset(variables | self._fixed, coords=time_axis, attrs=dict(self.attrs))
+
+
+def _about(name: str) -> dict[str, str]:
+    """Unit and meaning of a variable."""
+    if name not in VARIABLES:
+        return {}
+    _, unit, meaning = VARIABLES[name]
+    return {"units": unit, "long_name": meaning}
 
 
 def _same_run(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) -> None:
