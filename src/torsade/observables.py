@@ -129,8 +129,8 @@ def surface_strain(assembly: Assembly, state: State, radius: float) -> SurfaceSt
 def surface_stress(assembly: Assembly, state: State, material: Material, radius: float) -> Floats:
     """Von Mises stress at every hinge where it is largest on the surface [Pa], shape (n_hinges,).
 
-    √(σ² + 3τ²) with σ = |E ε| + E_b h κ, of stretch ε and bending, and τ = μ h |θ'|, of twist; ε is the mean of
-    the two edges, κ per present and θ' per rest length.
+    √(σ² + 3τ²) with σ = |E ε| + E_b h κ, of stretch ε and bending, and τ = μ h |θ'|, of twist; ε is the mean
+    of the two edges, κ per present and θ' per rest length.
     """
     strain = edge_lengths(assembly, state) / assembly.rest_length - 1
     a, b = assembly.hinges[:, 0], assembly.hinges[:, 1]

@@ -30,8 +30,8 @@ NODES_PER_RADIUS = 2
 NEIGHBOURS = 2.5
 """Contacts are left out between edges nearer than this along the fiber [radii].
 
-Twist bends a fiber to h kappa > 1, where nothing in rod theory keeps it from being crushed and neighbours would
-pass through each other. With this they touch from h kappa = 0.9 on, and below it nothing changes.
+Twist bends a fiber to h kappa > 1, where nothing in rod theory keeps it from being crushed and neighbours
+would pass through each other. With this they touch from h kappa = 0.9 on, and below it nothing changes.
 """
 
 LONGEST = 100.0
@@ -53,7 +53,7 @@ SILENT: Progress = lambda share, note: None  # noqa: E731
 
 
 class Battery(Driven):
-    """Tie a closed knot, twist it, let it come to rest with its link conserved, cut it and follow it to the end.
+    """Tie a closed knot, twist it, let it come to rest with its link conserved, cut it and let it discharge.
 
     Time begins with the cut. The fiber starts as the tight knot, scaled to its length or stretched from it,
     evenly twisted. Collisions do not twist it. Units of time and energy are T_0 = 2 L eta/(h E_b) and
@@ -152,8 +152,8 @@ class Battery(Driven):
     def _movable(self) -> Battery:
         if not self.fiber_material.eta > 0:
             raise TorsadeError(
-                f"material {self.material!r} has no viscosity, and overdamped motion needs one; give eta, for "
-                'example "1e4 Pa s"'
+                f"material {self.material!r} has no viscosity, and overdamped motion needs one; give eta, "
+                'for example "1e4 Pa s"'
             )
         if self.stop == "charged" and (self.cut_at is not None or self.duration is not None):
             what = "cut_at" if self.cut_at is not None else "duration"

@@ -1,4 +1,4 @@
-"""Discharging a battery (thesis 5.4): a fiber that was cut unties and straightens, all its energy lost to drag."""
+"""Discharging a battery (thesis 5.4): a cut fiber unties and straightens, its energy lost to drag."""
 
 from __future__ import annotations
 
@@ -76,8 +76,8 @@ def hinge_at(assembly: Assembly, share: float) -> int:
 class Discharge:
     """A closed fiber cut at a hinge; drive it as any motion. It is over when the battery is empty.
 
-    The ends lie face to face at first and are not in contact, as they were not before: parts of the fiber near
-    each other along it are left out. Once they have come apart they may touch like all others.
+    The ends lie face to face at first and are not in contact, as they were not before: parts of the fiber
+    near each other along it are left out. Once they have come apart they may touch like all others.
     """
 
     def __init__(
@@ -194,7 +194,7 @@ class Discharge:
 
 
 def _drawn_in(x: Floats) -> Floats:
-    """Nodes (n, 3) [m] with the ends drawn in a trifle: at the cut they are one point, where no strand is seen."""
+    """Nodes (n, 3) [m] with the ends drawn in a trifle: at the cut they are one point, and touch."""
     inner = x.copy()
     inner[0] += DRAWN_IN * (x[1] - x[0])
     inner[-1] += DRAWN_IN * (x[-2] - x[-1])

@@ -70,11 +70,9 @@ def _begin(spec: Driven, trial: Trial, out: str | Path | None, resume: bool, ove
     """A recording for all that this protocol measures."""
     attrs = spec.attributes() | {"start": trial.start} | dict(trial.about)
     samples = [SAMPLE + name for name in ("time", *trial.sampled)] if trial.sampled else []
-    sizes = {"time": len(_frame_times(spec, trial)), "sample": len(_sample_times(spec, trial))} | dict(
-        trial.sizes
-    )
+    counts = {"time": len(_frame_times(spec, trial)), "sample": len(_sample_times(spec, trial))}
     return Recording.begin(
-        sizes,
+        counts | dict(trial.sizes),
         trial.fixed,
         (*trial.names, *trial.derived, *samples),
         attrs,

@@ -24,8 +24,8 @@ DIRECTIONS = 60
 def least_crossings(x: Floats, views: Floats, low: Floats, high: Floats, flat: Floats) -> int:
     """Fewest crossings of the polyline x (n, 3) seen along any of views (n_views, 2, 3): right and up.
 
-    Rows of low, high and flat (n, 2) are scratch. Closed curves repeat their first node at the end; their first
-    and last edge do not count as crossing.
+    Rows of low, high and flat (n, 2) are scratch. Closed curves repeat their first node at the end; their
+    first and last edge do not count as crossing.
     """
     n = x.shape[0] - 1
     closed = x[0, 0] == x[n, 0] and x[0, 1] == x[n, 1] and x[0, 2] == x[n, 2]
@@ -57,7 +57,7 @@ def least_crossings(x: Floats, views: Floats, low: Floats, high: Floats, flat: F
                 dx, dy = qx - px, qy - py
                 count += (dy * px - dx * py > 0.0) != (dx * (by - py) - dy * (bx - px) > 0.0)
         least = min(least, count)
-    return least
+    return int(least)
 
 
 def fewest_crossings(x: ArrayLike, closed: bool, directions: int = DIRECTIONS) -> int:
@@ -75,7 +75,8 @@ def fewest_crossings(x: ArrayLike, closed: bool, directions: int = DIRECTIONS) -
     if closed:
         corners = np.concatenate([corners, corners[:1]])
     low, high, flat = (np.empty((len(corners), 2)) for _ in range(3))
-    return int(least_crossings(np.ascontiguousarray(corners), _views(directions), low, high, flat))
+    found: int = least_crossings(np.ascontiguousarray(corners), _views(directions), low, high, flat)
+    return found
 
 
 @lru_cache(maxsize=8)

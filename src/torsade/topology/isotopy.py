@@ -74,7 +74,7 @@ def thinned(x: Floats) -> Floats:
     """
     chain = chain_of([x], [True])
     take_out(chain, np.ones(len(x), dtype=bool), np.inf)
-    return x[chain.after != OUT]
+    return np.asarray(x[chain.after != OUT])
 
 
 def chain_of(strands: Sequence[Floats], closed: Sequence[bool], like: Sequence[Floats] = ()) -> Chain:
