@@ -200,13 +200,18 @@ def _picture(result: Result, path: str) -> None:
 
         draw_pieces(result.dataset, path)
         return
+    if result.protocol == "battery":
+        from torsade.view.battery import draw_battery
+
+        draw_battery(result.dataset, path)
+        return
     from torsade.view.scene import render_result
 
     render_result(result.dataset, path, frame=result.last_held)
 
 
 def _plot(result: Result, path: str) -> None:
-    from torsade.view import cascade, plots
+    from torsade.view import battery, cascade, plots
 
     by_protocol = {
         "prison-escape": plots.plot_separation,
@@ -214,6 +219,7 @@ def _plot(result: Result, path: str) -> None:
         "reidemeister": plots.plot_move,
         "bend-twist": plots.plot_bent,
         "pendulum": plots.plot_swing,
+        "battery": battery.plot_battery,
         **dict.fromkeys(BREAKING, cascade.plot_cascade),
     }
     by_protocol[result.protocol](result.dataset, path)

@@ -30,11 +30,10 @@ FACTOR = 1.4
 """Of the times of successive frames."""
 
 AT_REST = 1e-9
-"""Share of the energy that a fiber at rest loses in T_0, at most: a thousandth of what the slowest growing
-tremor of the starting shape releases."""
+"""Share of the energy that a fiber at rest loses in T_0, at most."""
 
-EARLIEST = 0.5
-"""Rest is not looked for before [T_0]."""
+EARLIEST = 50.0
+"""Rest is not looked for before [T_0]: a twisted knot may stay near an unstable shape for 30 T_0."""
 
 WAVES = 8
 """Waves around the fiber that the tremor of the starting shape is made of."""
