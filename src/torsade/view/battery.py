@@ -92,13 +92,11 @@ def draw_battery(dataset: xarray.Dataset, path: str | Path) -> Path:
 
 def _shapes(dataset: xarray.Dataset) -> Iterator[tuple[Floats, Floats, bool, str]]:
     """Nodes, energy density, whether closed, and what to say of every shape that is shown."""
-    last = {"charge": -1}
-    x, density = (
-        np.asarray(dataset[f"charge_{name}"].isel(last), np.float64)
-        for name in ("position", "energy_density")
-    )
+    charged, names = dataset.isel(charge=-1), ("position", "energy_density")
+    x, density = (np.asarray(charged[f"charge_{name}"], np.float64) for name in names)
     yield x, density, True, f"{dataset.attrs['knot']}, charged"
-    energy = sum(np.asarray(dataset[f"energy_{kind}"], np.float64) for kind in ENERGIES)
+    parts = [np.asarray(dataset[f"energy_{kind}"], np.float64) for kind in ENERGIES]
+    energy = np.sum(parts, axis=0)
     times = np.asarray(dataset["time"], np.float64) / dataset.attrs["T0_s"]
     for share in SHARES:
         reached = np.flatnonzero(energy <= share * energy[0])
