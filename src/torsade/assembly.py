@@ -162,6 +162,8 @@ def split(a: Assembly, hinge: int) -> Assembly:
     fiber_length = np.insert(a.fiber_length, fiber, first)
     fiber_length[fiber + 1] -= first
     shift = np.arange(len(a.node_start)) > fiber
+    ends_meet = np.insert(a.ends_meet, fiber, False)
+    ends_meet[fiber + 1] = False
     return Assembly(
         edges=edges,
         hinges=hinges,
@@ -176,7 +178,7 @@ def split(a: Assembly, hinge: int) -> Assembly:
         edge_start=np.insert(a.edge_start, fiber + 1, after),
         hinge_start=np.insert(a.hinge_start - shift, fiber + 1, hinge),
         closed=np.insert(a.closed, fiber, False),
-        ends_meet=np.insert(a.ends_meet, fiber, False),
+        ends_meet=ends_meet,
     )
 
 

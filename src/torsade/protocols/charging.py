@@ -32,8 +32,9 @@ FACTOR = 1.4
 AT_REST = 1e-9
 """Share of the energy that a fiber at rest loses in T_0, at most."""
 
-EARLIEST = 50.0
-"""Rest is not looked for before [T_0]: a twisted knot may stay near an unstable shape for 30 T_0."""
+EARLIEST = 0.5
+"""Rest is not looked for before this share of the longest time: a twisted knot may stay near a shape that is
+not stable for 30 T_0, losing next to nothing."""
 
 WAVES = 8
 """Waves around the fiber that the tremor of the starting shape is made of."""
@@ -77,7 +78,7 @@ def charge(
     frames = [_frame(motion, material, section)]
     names = [_knot(motion.state.x)]
     until, loss = FIRST * unit, math.inf
-    while not (until > EARLIEST * unit and loss < AT_REST) and motion.time < longest:
+    while not (motion.time >= EARLIEST * longest and loss < AT_REST) and motion.time < longest:
         until = min(until, longest)
         while motion.time < until:
             motion.advance(until, motion.at_once)
