@@ -9,8 +9,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from benchmarks import common
 from torsade.errors import TorsadeError
+from torsade.knots.likeness import likeness
+from torsade.knots.loops import tight_loop
 from torsade.protocols.battery import NODES_PER_RADIUS, Battery
 
 PAGE = Path(__file__).parents[1] / "docs" / "batteries.md"
@@ -21,7 +25,8 @@ KNOTS = ("3_1", "4_1", "5_1", "5_2", "6_1", "6_2", "6_3", *(f"7_{k}" for k in ra
 STUDIED = (("3_1", 0.0), ("4_1", 0.0), ("7_4", 0.0), ("3_1", 2.0), ("4_1", 2.0), ("7_4", 2.0), ("4_1", 4.0))
 """Knots and twist densities that are refined."""
 
-AMPHICHIRAL = ("4_1", "6_3")
+AMPHICHIRAL = (("4_1", 2.0), ("4_1", 4.0), ("6_3", 2.0), ("6_3", 4.0))
+MIRROR = np.array([1.0, 1.0, -1.0])
 SHARES = ("50", "10", "1")
 QUICK: Mapping[str, Any] = {"duration": "0.2 s", "charging": "0.5 s", "nodes": 60}
 
@@ -69,6 +74,26 @@ def refined(studied: Sequence[tuple[str, float]], short: Mapping[str, Any]) -> l
     return rows
 
 
+def mirrored(knot: str, twist: float, short: Mapping[str, Any]) -> list[Found]:
+    """A knot at both twists, the second cut where the first is, as far as the shapes are mirror images.
+
+    `mirror_distance` [radii] says how far: charged, and in their starting shape.
+    """
+    first, second = (Battery(knot=knot, twist=t, **short) for t in (twist, -twist))
+    shapes = [spec.charged()[0].state.x for spec in (first, second)]
+    start = tight_loop(knot).fiber(first.slenderness, len(shapes[0]))
+    reflected = likeness(shapes[0] * MIRROR, shapes[1])
+    n = len(shapes[0])
+    found = Battery.report(first.run())
+    place = reflected.node(round(found["cut_at"] * n), n) / n
+    other = Battery.report(second.model_copy(update={"cut_at": place}).run())
+    apart = {
+        "mirror_distance": reflected.distance / first.h,
+        "mirror_distance_tight": likeness(start * MIRROR, start).distance,
+    }
+    return [found | apart, other | apart]
+
+
 def surveyed(knots: Sequence[str], twists: Sequence[float], short: Mapping[str, Any]) -> list[Found]:
     """All knots at all twist densities."""
     return [run(knot, twist, **short) for knot in knots for twist in twists]
@@ -89,6 +114,31 @@ def survey_table(rows: Sequence[Found], doubled: Sequence[Found] = ()) -> str:
         row = list(_row(found, ""))
         del row[2]
         cells.append([*row, *(times(doubled[k]) if doubled else ())])
+    return common.table(heads, cells)
+
+
+def mirror_table(rows: Sequence[Found]) -> str:
+    """Energy and discharge times of mirror images, and how far their shapes are from being so."""
+    heads = [
+        "knot",
+        "h θ′",
+        "energy [E_0]",
+        "Wr",
+        "50 %",
+        "10 %",
+        "1 %",
+        "charged apart [h]",
+        "tight apart [h]",
+    ]
+    cells = [
+        [
+            *list(_row(found, ""))[:2],
+            *list(_row(found, ""))[3:-1],
+            found["mirror_distance"],
+            found["mirror_distance_tight"],
+        ]
+        for found in rows
+    ]
     return common.table(heads, cells)
 
 
@@ -116,14 +166,18 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     double = {"nodes": 2 * round(NODES_PER_RADIUS * 50)}
     found: dict[str, Any] = {
         "refined": refined(STUDIED[:1] if options.quick else STUDIED, short),
-        "mirror": surveyed(AMPHICHIRAL[: len(knots)], (2.0, -2.0, 4.0, -4.0), short),
+        "mirror": [
+            row
+            for knot, twist in AMPHICHIRAL[: 1 if options.quick else None]
+            for row in mirrored(knot, twist, short)
+        ],
         "untwisted": surveyed(knots, (0.0,), short),
         "untwisted_doubled": surveyed(knots, (0.0,), {**double, **short}),
         "twisted": surveyed(knots, (3.0, -3.0), short),
     }
     tables = {
         "refinement": refinement_table(found["refined"]),
-        "mirror": survey_table(found["mirror"]),
+        "mirror": mirror_table(found["mirror"]),
         "untwisted": survey_table(found["untwisted"], found["untwisted_doubled"]),
         "twisted": survey_table(found["twisted"]),
     }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
@@ -26,6 +27,9 @@ __all__ = ["Battery"]
 
 NODES_PER_RADIUS = 2
 """Of rest length, unless a number of nodes is given; see the study in docs/batteries.md."""
+
+FARTHEST_NODES = 1.5
+"""Greatest distance of nodes at the start [radii]."""
 
 NEIGHBOURS = 2.5
 """Contacts are left out between edges nearer than this along the fiber [radii].
@@ -229,6 +233,12 @@ class Battery(Driven):
                 f"{self.knot} is tight at L/h = {loop.ropelength:.1f}, and a fiber with slenderness "
                 f"{self.slenderness:g} would be stretched by {100 * stretch:.0f} %; give a slenderness of at "
                 f"least {least:.1f}"
+            )
+        apart = max(1.0, 1 + stretch) * self.slenderness / n
+        if apart > FARTHEST_NODES:
+            raise TorsadeError(
+                f"{n} nodes are {apart:.2g} radii apart, and strands could slip through; give at least "
+                f"{math.ceil(n * apart / FARTHEST_NODES)} nodes"
             )
         x = trembled(loop.fiber(L * max(1.0, 1 + stretch), n), self.noise * self.h, self.seed)
         check(Centerline((x,), (True,)), self.h)
