@@ -77,6 +77,7 @@ def refined(studied: Sequence[tuple[str, float]], short: Mapping[str, Any]) -> l
 def mirrored(knot: str, twist: float, short: Mapping[str, Any]) -> list[Found]:
     """A knot at both twists, the second cut where the first is, as far as the shapes are mirror images.
 
+    The third is the mirror image of the knot, with the same noise, cut where its own stress is largest.
     `mirror_distance` [radii] says how far: charged, and in their starting shape.
     """
     first, second = (Battery(knot=knot, twist=t, **short) for t in (twist, -twist))
@@ -91,7 +92,7 @@ def mirrored(knot: str, twist: float, short: Mapping[str, Any]) -> list[Found]:
         "mirror_distance": reflected.distance / first.h,
         "mirror_distance_tight": likeness(start * MIRROR, start).distance,
     }
-    return [found | apart, other | apart]
+    return [found | apart, other | apart, run(f"m{knot}", -twist, **short) | apart]
 
 
 def surveyed(knots: Sequence[str], twists: Sequence[float], short: Mapping[str, Any]) -> list[Found]:
@@ -119,27 +120,12 @@ def survey_table(rows: Sequence[Found], doubled: Sequence[Found] = ()) -> str:
 
 def mirror_table(rows: Sequence[Found]) -> str:
     """Energy and discharge times of mirror images, and how far their shapes are from being so."""
-    heads = [
-        "knot",
-        "h θ′",
-        "energy [E_0]",
-        "Wr",
-        "50 %",
-        "10 %",
-        "1 %",
-        "charged apart [h]",
-        "tight apart [h]",
-    ]
-    cells = [
-        [
-            *list(_row(found, ""))[:2],
-            *list(_row(found, ""))[3:-1],
-            found["mirror_distance"],
-            found["mirror_distance_tight"],
-        ]
-        for found in rows
-    ]
-    return common.table(heads, cells)
+    heads = ["knot", "h θ′", "energy [E_0]", "Wr", "50 %", "10 %", "1 %"]
+    cells = []
+    for found in rows:
+        knot, twist, _, *numbers, _ = _row(found, "")
+        cells.append([knot, twist, *numbers, found["mirror_distance"], found["mirror_distance_tight"]])
+    return common.table([*heads, "charged, apart [h]", "tight, apart [h]"], cells)
 
 
 def _row(found: Found, note: str) -> Iterator[object]:

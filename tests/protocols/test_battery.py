@@ -161,12 +161,13 @@ def test_a_trefoil_is_untied() -> None:
 
 
 def test_a_mirror_image_does_as_the_mirror_image() -> None:
-    """Of the knot, of its twist and of the noise: energies and times are the same but for round-off."""
-    specs = (SHORT, SHORT.model_copy(update={"knot": "m4_1", "twist": -1.0, "noise": 0.0}))
-    right, left = (spec.model_copy(update={"noise": 0.0}).run().dataset for spec in specs)
+    """Without noise, m5_2 at -1 is 5_2 at 1 seen in a mirror, but for what errors of the solver grow to."""
+    changes = ({"knot": "5_2"}, {"knot": "m5_2", "twist": -1.0})
+    right, left = (SHORT.model_copy(update={"noise": 0.0, **c}).run().dataset for c in changes)
     for name in ("energy_bend", "energy_twist"):
-        np.testing.assert_allclose(right[name], left[name], rtol=1e-5)
-    np.testing.assert_allclose(right["writhe"], -left["writhe"], atol=1e-5)
+        np.testing.assert_allclose(right[name][:6], left[name][:6], rtol=1e-5)
+        np.testing.assert_allclose(right[name], left[name], rtol=3e-3)
+    np.testing.assert_allclose(right["writhe"], -left["writhe"], atol=3e-3)
 
 
 def test_an_interrupted_run_goes_on_to_the_same_bits(tmp_path: Path) -> None:
