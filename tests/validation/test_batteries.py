@@ -25,6 +25,7 @@ def test_a_charged_ring_buckles_at_the_critical_twist(sign: int) -> None:
     assert writhe[1] > 0.9
 
 
+@pytest.mark.slow
 def test_a_loose_untwisted_trefoil_tends_to_two_coincident_circles() -> None:
     """E L/B of a trefoil at L/h = 200 is within 1.5 % of 79.7, and above 8 pi^2 = 78.96, twice a circle.
 
