@@ -52,6 +52,10 @@ SCRIPTS = (
     "torque_writhe",
     "tightening",
     "batteries",
+    "breaking",
+    "third_break",
+    "movies",
+    "block",
 )
 
 
@@ -92,6 +96,13 @@ def test_the_solvers_compared_agree(script: Any) -> None:
     assert row["contacts"] > 0
     assert row["residual_of_direct"] < 1e-9
     assert row["off_by_conjugate_gradients"] < 1e-2
+
+
+def test_a_block_of_threads_finds_the_direct_solution(script: Any) -> None:
+    row = script("block").compare(0.6, 0.002)
+    assert row["contacts"] > 0
+    assert row["off"] < 1e-4
+    assert row["barriers"] > row["iterations"] * math.log2(row["nodes"])
 
 
 def test_absent_centerlines_are_left_out_in_one_sentence(script: Any, tmp_path: Path) -> None:

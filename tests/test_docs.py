@@ -57,6 +57,7 @@ def test_commands_are_found() -> None:
         "tight",
         "knots",
         "figure",
+        "movie",
         "trials",
         "material",
     }
@@ -119,6 +120,16 @@ def test_a_knot_shown_is_made(line: str, tmp_path: Path) -> None:
         [sys.executable, "-m", *shlex.split(line)], capture_output=True, text=True, check=False, cwd=tmp_path
     )
     assert (done.returncode, done.stderr) == (0, "")
+
+
+@pytest.mark.parametrize("line", [line for line in commands() if line.split()[1] == "movie"])
+def test_a_movie_shown_lacks_nothing_but_its_result(line: str, tmp_path: Path) -> None:
+    """Options are read before the result is looked for."""
+    done = subprocess.run(
+        [sys.executable, "-m", *shlex.split(line)], capture_output=True, text=True, check=False, cwd=tmp_path
+    )
+    assert done.returncode == 2
+    assert "zarr' does not exist; give a folder" in done.stderr
 
 
 @pytest.mark.parametrize("line", [line for line in commands() if line.split()[1] == "run"])

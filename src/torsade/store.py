@@ -88,7 +88,7 @@ def set_attributes(path: Path, changed: Mapping[str, Any]) -> None:
     import zarr
 
     with writing(path), _quiet_zarr():
-        zarr.open_group(path, mode="r+").attrs.update(dict(changed))
+        zarr.open_group(path, mode="r+").update_attributes(dict(changed))
 
 
 def write_restart(part: Path, arrays: Arrays) -> None:
@@ -157,7 +157,7 @@ def complete(part: Path, out: Path, sizes: Mapping[str, int], changed: Mapping[s
             size = sizes.get(str(names[0])) if names else None
             if size not in (None, array.shape[0]):
                 array.resize((size, *array.shape[1:]))
-        group.attrs.update(dict(changed) | {"chunks": chunk_files(part)})
+        group.update_attributes(dict(changed) | {"chunks": chunk_files(part)})
         zarr.consolidate_metadata(str(part))
         replace(part, out)
         (out / RESTART).unlink(missing_ok=True)

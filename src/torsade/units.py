@@ -41,6 +41,7 @@ __all__ = [
     "Torque",
     "Velocity",
     "Viscosity",
+    "indefinite",
     "metres",
     "quantity",
 ]
@@ -214,7 +215,9 @@ def _from_text(text: str, wanted: Dimension) -> float:
         raise QuantityError(f"{quoted(text)} has {reason}; {_advice(wanted)}") from None
     if measure.exponents != wanted.exponents:
         given = next((d.name for d in DIMENSIONS.values() if d.exponents == measure.exponents), None)
-        raise QuantityError(f"{quoted(text)} is {_a(given)}, not {_a(wanted.name)}; {_advice(wanted)}")
+        raise QuantityError(
+            f"{quoted(text)} is {indefinite(given)}, not {indefinite(wanted.name)}; {_advice(wanted)}"
+        )
     return _to_float(exact * measure.factor)
 
 
@@ -278,7 +281,8 @@ def _unreadable(part: str) -> ValueError:
     return ValueError(f"a unit that cannot be read at {part!r}" if part else "a unit that ends too soon")
 
 
-def _a(name: str | None) -> str:
+def indefinite(name: str | None) -> str:
+    """A name of a dimension with its article; None is something else."""
     if name is None:
         return "something else"
     return f"an {name}" if name[0] in "aeiou" else f"a {name}"
@@ -287,7 +291,7 @@ def _a(name: str | None) -> str:
 def _advice(wanted: Dimension) -> str:
     if not wanted.unit:
         return f'give a pure number, such as "{wanted.example}"'
-    return f'give {_a(wanted.name)} such as "{wanted.example}", or a number in {wanted.unit}'
+    return f'give {indefinite(wanted.name)} such as "{wanted.example}", or a number in {wanted.unit}'
 
 
 def _reads(dimension: str) -> BeforeValidator:

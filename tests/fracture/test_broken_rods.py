@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from torsade.assembly import assemble
 from torsade.errors import TorsadeError
 from torsade.fracture.cascade import Cascade, Fracture, most_breaks, strengths
 from torsade.fracture.criteria import CRITERIA, stress
@@ -206,13 +207,22 @@ def test_disorder_moves_the_first_break_from_the_middle_and_lets_odd_numbers_occ
     assert {n % 2 for n in counts} == {0, 1}
 
 
-def test_there_is_room_for_as_many_breaks_as_lambda_allows() -> None:
-    from torsade.assembly import assemble
-
+@pytest.mark.parametrize(
+    ("mm", "edges"), [(30, 13), (31.3, 14), (7, 3), (2.3, 1), (0, 1), (119, 50), (121, 51)]
+)
+def test_there_is_room_for_as_many_breaks_as_lambda_allows(mm: float, edges: int) -> None:
+    """Against all places of the first break; each side then breaks into pieces of so many edges or more."""
     a = assemble([np.outer(np.linspace(0, 0.24, 101), [1.0, 0, 0])])
-    assert most_breaks(a, 0.03) == 6  # 31.2 mm is the first multiple of 2.4 mm above 30 mm
-    assert most_breaks(a, 0.0) == 99
-    assert most_breaks(a, 0.12) == 0
+    most = max(1 + sum(max(side // edges - 1, 0) for side in (x, 100 - x)) for x in range(1, 100))
+    assert most_breaks(a, 1e-3 * mm) == most
+
+
+def test_frames_hold_a_short_first_piece_and_all_that_fit_beside_it() -> None:
+    """35 edges of 4.8 mm of a rod that broke after the first can be cut six times at 33.6 mm."""
+    spec = SnapTwist(frames=4)
+    trial = spec.trial()
+    fresh, _ = spec.broken()
+    assert trial.sizes["piece_bound"] >= most_breaks(fresh.motion.assembly, spec.least_fragment) + 2
 
 
 def test_a_rod_twisted_the_other_way_breaks_as_its_mirror_image() -> None:

@@ -50,6 +50,14 @@ class TestRead:
         )
         assert one.lengths == pytest.approx(two.lengths)
 
+    def test_headings_in_capitals(self, tmp_path: Path) -> None:
+        """As some spreadsheets write them, after a byte order mark: units in small letters are meant."""
+        small = "lengths_mm;twist_deg;speed_mm_per_s;end_distance (mm)"
+        rows = "\n90 30 120;180;3;200\n"
+        capitals = trials(tmp_path, "\ufeff" + small.upper() + rows)
+        assert capitals.trials == trials(tmp_path, small + rows).trials
+        assert capitals.columns == ("lengths", "twist", "speed", "end_distance")
+
     def test_a_column_for_each_piece(self, tmp_path: Path) -> None:
         (one,) = trials(tmp_path, "length_1_mm,length_2_mm,length_3_mm\n90,150,\n").trials
         assert one.lengths == pytest.approx((0.09, 0.15))
@@ -95,7 +103,10 @@ MISTAKES = {
     "pieces,end_distance_mm\n2,250\n": "has end_distance = 250 mm, more than the rod's 240 mm",
     "pieces,end_distance_mm\n2,-1\n": "has end_distance = -0.001 in SI units; give 0 or more",
     "pieces,twist_deg\n2\n": "line 2 has 1 columns where the headings have 2; leave cells empty",
-    "pieces;twist_deg\n2;3,5\n": "line 2 has twist_deg = '3,5'; give a number",
+    "pieces;twist_deg\n2;3,5\n": "line 2 has twist_deg = '3,5'; write decimals with a point, such as 3.5",
+    "pieces,twist_deg\n2,1e9\n": "has twist = 1e+09 deg, and no rod of this length and radius bears",
+    "pieces,twist_rad\n2,-250\n": "has twist = -1.432e+04 deg, and no rod",
+    "pieces,limit_curvature_per_m\n2,1400\n": "has limit_curvature = 1400 1/m, and no rod",
 }
 
 

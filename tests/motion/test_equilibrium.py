@@ -7,7 +7,7 @@ import pytest
 
 from torsade import observables
 from torsade.errors import TorsadeError
-from torsade.motion.equilibrium import bent, bent_until, limit_curvature
+from torsade.motion.equilibrium import bent, bent_until, curvature_at_distance
 from torsade.motion.supports import Fiber
 
 UNIT = Fiber(1.0, 100, 1.0, 0.8)
@@ -77,17 +77,28 @@ def test_small_arches_are_sines() -> None:
         assert found.kappa_max == pytest.approx(2 * np.pi * np.sqrt(short), rel=max(1e-4, 2 * short))
 
 
-def test_limit_curvatures_and_their_errors() -> None:
+def test_curvatures_at_distances_and_their_errors() -> None:
     """The range is where the distance may be, by the elastica: kappa falls from 5.0352 to 4.7179 to 4.3971.
 
     Rows d/L = 0.49, 0.54, 0.59 of the table of test_elastica.
     """
-    found = limit_curvature(Fiber(1.0, 400), 0.54, 0.0, 0.05)
+    found = curvature_at_distance(Fiber(1.0, 400), 0.54, 0.0, 0.05)
     assert found == pytest.approx((4.71794167824, 4.39707289197, 5.03517181293), rel=1e-4)
-    exact = limit_curvature(UNIT, 0.8, 1.0)
+    exact = curvature_at_distance(UNIT, 0.8, 1.0)
     assert exact.low == exact.value == exact.high
-    nearly = limit_curvature(UNIT, 0.999, 1.0, 0.01)
+    nearly = curvature_at_distance(UNIT, 0.999, 1.0, 0.01)
     assert nearly.low == 0.0 < nearly.value < nearly.high
+
+
+@pytest.mark.parametrize(("distance", "farther"), [(0.7, 0.98), (0.7, 0.999), (0.4, 0.99), (0.05, 1 - 1e-8)])
+def test_an_arch_is_opened_until_it_is_nearly_straight(distance: float, farther: float) -> None:
+    """However long the way, the shape is the arch that is found without a neighbour, on the same side."""
+    near = bent(UNIT, distance)
+    opened, alone = bent(UNIT, farther, near=near), bent(UNIT, farther)
+    assert opened.kappa_max == pytest.approx(alone.kappa_max, rel=1e-7)
+    assert opened.x[:, 1].min() >= -1e-12
+    low = curvature_at_distance(UNIT, distance, 0.0, farther - distance).low
+    assert low == pytest.approx(alone.kappa_max, rel=1e-7)
 
 
 @pytest.mark.parametrize(

@@ -30,6 +30,7 @@ SHORT = SnapTwist(twist="60 deg", duration="0.4 ms", frames=20)
         (SnapQuench, {"speed": "1 m/s", "approach": "1 s"}, r"an approach of 1 s at 1000 mm/s is longer"),
         (SnapQuench, {"twist": 1}, r"snap-quench bends a rod without twist"),
         (Pendulum, {"mass": "1 mg", "mass_radius": "1 mm"}, r"moment of inertia is 5e-13 .* less than"),
+        (Pendulum, {"turn": 0}, r"turn is 0; give an angle above 0 rad"),
         (Pendulum, {"angle": 1}, r"no field 'angle'; did you mean 'turn'\?"),
     ],
 )
@@ -43,6 +44,7 @@ def test_unfit_specifications_are_refused_in_a_sentence(protocol: type, fields: 
     [
         (SnapTwist(twist="400 deg"), r"a twist of 400 deg breaks the straight rod, .* less than 361"),
         (SnapTwist(sigma_c="1 GPa"), r"would break at a curvature of 751.9 1/m, .* give a smaller sigma_c"),
+        (SnapTwist(sigma_c="1 kPa"), r"breaks all but straight, .* give a larger sigma_c"),
         (SnapTwist(step="10 us"), r"a step of 1e-05 s is not stable with edges of 4.8 mm"),
         (SnapTwist(frames=5000), r"5000 frames in 0.002057 s are .* less than a step of 1e-06 s; give fewer"),
     ],
@@ -130,6 +132,18 @@ def test_a_quench_starts_on_its_way_and_breaks_where_it_would_if_bent_slowly(spe
     assert report["critical_curvature_per_m"] == pytest.approx(14.285714, rel=1e-4)
     assert report["breaks"][0]["time_s"] == pytest.approx(5e-3, rel=1e-2)
     assert report["fragments"] == 6
+
+
+@pytest.mark.parametrize("speed", ["3 m/s", "5 m/s", "10 m/s"])
+def test_a_quench_that_begins_nearly_straight_bends_to_one_side(speed: str) -> None:
+    """Its ends are up to 99.9 % of the length apart, and near each other at the speed given."""
+    spec = SnapQuench(speed=speed)
+    cascade = spec.driven()
+    x, v = cascade.motion.state.x, cascade.motion.state.v
+    assert x[:, 1].min() >= -1e-12
+    assert x[25, 1] > 1e-3
+    assert v[0, 0] - v[-1, 0] == pytest.approx(spec.speed, rel=1e-3)
+    assert v[25, 1] > spec.speed
 
 
 def test_the_least_fragment_falls_with_speed_where_that_is_asked_for() -> None:

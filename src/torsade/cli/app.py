@@ -12,6 +12,7 @@ from cyclopts import App, Group, Parameter
 from torsade import __version__
 from torsade.cli.fracture_app import add_commands
 from torsade.cli.knots_app import knots_app
+from torsade.cli.movie_app import add_command as add_movie
 from torsade.errors import TorsadeError
 
 if TYPE_CHECKING:
@@ -27,6 +28,10 @@ OPTIONS: dict[str, tuple[type, str]] = {
         "Draw the last frame, or the last frame before slipping, to this PNG file, coloured by strain.",
     ),
     "plot": (str, "Plot the history to this file (.png, .pdf or .svg)."),
+    "movie": (
+        str,
+        "Make a movie of 8 s in this file (.mp4 or .gif); torsade movie makes others of a result in --out.",
+    ),
     "json": (bool, "Print the numbers as JSON, and nothing else, on the standard output."),
     "resume": (bool, "Go on with the --out of an interrupted run of the same specification."),
     "overwrite": (bool, "Replace an earlier result in --out."),
@@ -39,7 +44,7 @@ EXAMPLES = {
     "bend-twist": '--length "24 cm" --end-distance "19 cm" --twist "270 deg" --plot bent.png',
     "pendulum": '--turn "45 deg" --mass "20 g" --out pendulum.zarr --plot pendulum.png',
     "snap-quench": '--speed "100 mm/s" --disorder 0.05 --seed 1 --out quench.zarr --plot quench.png',
-    "snap-twist": '--twist "270 deg" --out snap.zarr --plot snap.png',
+    "snap-twist": '--twist "270 deg" --out snap.zarr --frames 200 --movie snap.mp4',
     "tighten": '--knot overhand --duration "10 s" --until-still "1 um/s" --out overhand.zarr',
     "reidemeister": "--move R1 --out loop.zarr --plot loop.png",
 }
@@ -106,6 +111,7 @@ def build(arguments: list[str]) -> App:
     app.command(knots_app())
     app.command(_tight, name="tight", help_epilogue=TIGHT_EXAMPLES, version_flags=[])
     add_commands(app)
+    add_movie(app)
     app.command(_figure, name="figure", help_epilogue=FIGURE_EXAMPLES, version_flags=[])
     run = App(
         name="run",

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from torsade import places
 from torsade.cli.messages import say
 from torsade.errors import TorsadeError, reason_of
+from torsade.protocols.base import Driven
 from torsade.protocols.files import PROTOCOLS, merged, read_fields
 from torsade.protocols.prison_escape import PrisonEscape
 
@@ -37,6 +38,7 @@ def run(
     out: str | None,
     picture: str | None,
     plot: str | None,
+    movie: str | None,
     json: bool,
     resume: bool,
     overwrite: bool,
@@ -45,10 +47,12 @@ def run(
     wanted = _read(protocol, given, spec)
     if picture is not None and not protocol.pictured:
         raise TorsadeError(f"{wanted.protocol} has nothing to be pictured; give --plot in place of --picture")
-    check_drawings(picture, plot)
+    if movie is not None and not (protocol.pictured and issubclass(protocol, Driven)):
+        raise TorsadeError(f"{wanted.protocol} has no fibers that move; give --plot in place of --movie")
+    check_drawings(picture, plot, movie)
     result = _run(wanted, out, resume, overwrite, json)
     _print(result, out, json)
-    _draw(result, out, picture, plot, json)
+    _draw(result, out, picture, plot, movie, json)
     return 0
 
 
@@ -59,7 +63,7 @@ def demo(out: str, json: bool) -> int:
     result = _run(spec, target, False, True, json)
     _print(result, target, json)
     can_draw, can_plot = _can("pyvista"), _can("matplotlib")
-    _draw(result, target, picture if can_draw else None, plot if can_plot else None, json)
+    _draw(result, target, picture if can_draw else None, plot if can_plot else None, None, json)
     if not json:
         advice = [] if can_draw and can_plot else [f"For pictures of the knot: {INSTALL_VIEW}"]
         advice += [
@@ -106,11 +110,13 @@ def _read(protocol: type[Spec], given: dict[str, str], path: str | None) -> Spec
     return protocol(**merged(fields, given))
 
 
-def check_drawings(picture: str | None, plot: str | None) -> None:
-    """Refuse pictures that cannot be drawn or written, before anything is computed."""
+def check_drawings(picture: str | None, plot: str | None, movie: str | None = None) -> None:
+    """Refuse pictures and movies that cannot be drawn or written, before anything is computed."""
     for path, module, endings in (
         (picture, "pyvista", (".png",)),
         (plot, "matplotlib", (".png", ".pdf", ".svg")),
+        (movie, "pyvista", (".mp4", ".gif")),
+        (movie, "imageio_ffmpeg", (".mp4", ".gif")),
     ):
         if path is None:
             continue
@@ -173,12 +179,19 @@ def _notice(share: float, note: str) -> None:
         say(note)
 
 
-def _draw(result: Result, out: str | None, picture: str | None, plot: str | None, quiet: bool) -> None:
+def _draw(
+    result: Result, out: str | None, picture: str | None, plot: str | None, movie: str | None, quiet: bool
+) -> None:
     """Draw what is asked for; what cannot be drawn does not keep the other from being drawn."""
     from torsade.cli.table import print_file
 
     failures = []
-    for what, path, draw in (("picture", picture, _picture), ("plot", plot, _plot)):
+    drawings = (
+        ("picture", picture, _picture),
+        ("plot", plot, _plot),
+        ("movie", movie, lambda result, path: _movie(result, path, quiet)),
+    )
+    for what, path, draw in drawings:
         if path is None:
             continue
         try:
@@ -208,6 +221,13 @@ def _picture(result: Result, path: str) -> None:
     from torsade.view.scene import render_result
 
     render_result(result.dataset, path, frame=result.last_held)
+
+
+def _movie(result: Result, path: str, quiet: bool) -> None:
+    from torsade.view.film import movie
+
+    with progress(quiet) as shown:
+        movie(result.dataset, path, progress=shown)
 
 
 def _plot(result: Result, path: str) -> None:

@@ -90,6 +90,12 @@ COMMANDS = MappingProxyType(
             "",
             "{} comes after the number; make one figure at a time, such as torsade figure 4-5",
         ),
+        "movie": _Command(
+            ("--out", "--seconds", "--fps", "--size", "--frames", "--colour"),
+            ("--whole", "--json"),
+            "nothing is given; give the result of a run, such as snap.zarr",
+            "{} comes after the result; give one result at a time, such as torsade movie snap.zarr",
+        ),
         "knots list": _Command(("--kind",), ("--json",), "", _QUOTE),
         "knots show": _Command((), ("--json",), "nothing is given; give a name such as reef or 5_1", _QUOTE),
         "knots build": _Command(

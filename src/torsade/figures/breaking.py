@@ -17,6 +17,7 @@ from torsade.fracture.rod import Rod, spaghetti
 from torsade.fracture.statistics import mean, sectors
 from torsade.fracture.theory.binary import binary_slope
 from torsade.view._extra import require
+from torsade.view.colours import stress_colormap
 
 if TYPE_CHECKING:
     from torsade.protocols.snap_twist import SnapTwist
@@ -33,6 +34,7 @@ __all__ = [
     "half",
     "mean_by",
     "pieces_colour",
+    "pieces_colours",
     "sector_table",
     "trial_table",
     "twist_trials",
@@ -66,6 +68,12 @@ _COUNTS = ("#5b3a8e", "#2f6fa8", "#3f9e8f", "#8fbf4d", "#e0b63a", "#d97a34", "#b
 def pieces_colour(pieces: int) -> str:
     """Of a number of pieces, from 2 on."""
     return _COUNTS[min(max(pieces - 2, 0), len(_COUNTS) - 1)]
+
+
+def pieces_colours(most: int) -> Any:
+    """Of mean numbers of pieces from 2 to `most`: those of whole numbers, and what lies between."""
+    colours = [pieces_colour(pieces) for pieces in range(2, most + 1)]
+    return require("matplotlib.colors").LinearSegmentedColormap.from_list("pieces", colours)
 
 
 def twist_trials(which: int, degrees: Sequence[float], seeds: Sequence[int]) -> dict[str, SnapTwist]:
@@ -171,18 +179,12 @@ def draw_pieces(axes: Any, result: Result, frame: int, shift: tuple[float, float
             segments += [nodes[k : k + 2] for k in range(len(nodes) - 1)]
             values += [float(v) for v in 0.5 * (sigma[a : b - 1] + sigma[a + 1 : b])]
     lines = require("matplotlib.collections").LineCollection(
-        segments, cmap=_stress_colours(), linewidths=width, capstyle="round"
+        segments, cmap=stress_colormap(), linewidths=width, capstyle="round"
     )
     lines.set_array(np.asarray(values))
     lines.set_clim(0.0, 1.0)
     axes.add_collection(lines)
     return lines
-
-
-def _stress_colours() -> Any:
-    """Yellow without stress, black at the strength; the palest colours are left out."""
-    shades = require("matplotlib").colormaps["inferno_r"](np.linspace(0.13, 1.0, 256))
-    return require("matplotlib.colors").ListedColormap(shades, name="stress")
 
 
 def mean_by(keys: Sequence[float], values: Sequence[float]) -> list[tuple[float, Any]]:

@@ -104,8 +104,8 @@ def draw_sectors(axes: Any, table: Table, which: int) -> None:
         yerr=columns["limit_curvature_sd_per_m"], fmt="none", ecolor=panels.MUTED, elinewidth=0.8, zorder=4,
     )  # fmt: skip
     points = axes.scatter(
-        columns["twist_deg"], columns["limit_curvature_per_m"], c=columns["pieces"], cmap="viridis_r", s=26,
-        vmin=2, vmax=6, edgecolors="white", linewidths=0.5, zorder=5,
+        columns["twist_deg"], columns["limit_curvature_per_m"], c=columns["pieces"], s=26, vmin=2, vmax=6,
+        cmap=breaking.pieces_colours(6), edgecolors="white", linewidths=0.5, zorder=5,
     )  # fmt: skip
     bar = axes.figure.colorbar(points, ax=axes, ticks=[2, 3, 4, 5, 6], aspect=22, pad=0.02)
     bar.set_label("mean number of pieces")

@@ -7,6 +7,7 @@ is empty is a number that is not known. Lines that begin with # are comments.
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import re
 from collections.abc import Sequence
@@ -181,14 +182,15 @@ def _with_unit(text: str, unit: str, column: Column, where: str) -> _Heading | N
         raise TorsadeError(
             f"{where} has the heading {quoted(text, 40)} without a unit; write {column.heading}"
         )
-    plain = re.sub(r"^per_", "1/", unit).replace("_per_", "/")
-    try:
-        return _Heading(column, text, quantity(f"1 {plain}", column.dimension))
-    except QuantityError:
-        raise TorsadeError(
-            f"{where} has the heading {quoted(text, 40)}, where {quoted(unit, 20)} is no unit of "
-            f"{column.dimension}; write {column.heading}"
-        ) from None
+    # A heading all in capitals has a unit in capitals too, which is no unit as it stands.
+    for spelt in (unit, unit.lower()) if text.isupper() else (unit,):
+        plain = re.sub(r"^per_", "1/", spelt).replace("_per_", "/")
+        with contextlib.suppress(QuantityError):
+            return _Heading(column, text, quantity(f"1 {plain}", column.dimension))
+    raise TorsadeError(
+        f"{where} has the heading {quoted(text, 40)}, where {quoted(unit, 20)} is no unit of "
+        f"{column.dimension}; write {column.heading}"
+    )
 
 
 def _row(cells: Sequence[str], headings: Sequence[_Heading | None], where: str) -> dict[str, Cell]:
@@ -224,5 +226,10 @@ def _number(cell: str, heading: _Heading, where: str) -> float:
         raise TorsadeError(
             f"{where} has {heading.text} = {quoted(cell, 40)}; give the number alone, in the unit of the "
             "heading"
+        )
+    if re.fullmatch(r"[-+]?\d+,\d+", cell):
+        raise TorsadeError(
+            f"{where} has {heading.text} = {quoted(cell, 40)}; write decimals with a point, such as "
+            f"{cell.replace(',', '.')[:20]}"
         )
     return finite_number(cell, heading.text, where)

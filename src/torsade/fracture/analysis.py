@@ -203,7 +203,9 @@ def _curvature(trial: Trial, rod: Rod) -> tuple[tuple[float, float, float], bool
         fiber = Fiber(rod.L, EDGES, rod.B, rod.C)
         try:
             return (
-                equilibrium.limit_curvature(fiber, trial.end_distance, trial.twist, trial.end_distance_error),
+                equilibrium.curvature_at_distance(
+                    fiber, trial.end_distance, trial.twist, trial.end_distance_error
+                ),
                 False,
             )
         except TorsadeError:

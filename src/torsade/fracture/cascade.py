@@ -93,12 +93,21 @@ def strengths(
 
 
 def most_breaks(assembly: Assembly, min_fragment: float) -> int:
-    """The largest number of breaks that leave every piece longer than min_fragment [m]."""
-    count, since = 0, 0.0
-    longest = float(assembly.rest_length.sum())
-    for l in assembly.rest_length[:-1]:
-        since += l
-        longest -= l
+    """The largest number of breaks: the first anywhere, others leaving pieces longer than min_fragment [m].
+
+    There are most where the first cuts off one edge at an end. Grips, edges without length, do not count.
+    """
+    l = assembly.rest_length
+    l = l[l > 1e-9 * l.max()]
+    return min(1 + max(_cuts(l[1:], min_fragment), _cuts(l[-2::-1], min_fragment)), len(l) - 1)
+
+
+def _cuts(l: Floats, min_fragment: float) -> int:
+    """How often edges of these lengths (n_edges,) [m] can be cut into pieces longer than min_fragment [m]."""
+    count, since, longest = 0, 0.0, float(l.sum())
+    for length in l[:-1]:
+        since += length
+        longest -= length
         if since > _above(min_fragment) and longest > _above(min_fragment):
             count, since = count + 1, 0.0
     return count

@@ -20,6 +20,9 @@ ACCURACY = 1e-9
 
 MOST_SHAPES = 40
 
+SLIGHT = 1e-3
+"""Curvature times length below which a rod is not told from a straight one."""
+
 
 def rod_fiber(material: Material, section: Section, length: float, edges: int) -> Fiber:
     """An inextensible rod for `torsade.motion.equilibrium`, of a length [m]."""
@@ -61,6 +64,11 @@ def breaking_shape(
     density = total_twist / fiber.length
     bears = np.array([float(limit_curvature(density, s, E, mu, h, criterion)) for s in strength])
     wanted = float(bears.min())
+    if wanted * fiber.length < SLIGHT:
+        raise TorsadeError(
+            f"the rod breaks all but straight, at a curvature of {wanted:.4g} 1/m; give a larger sigma_c, or "
+            "less twist"
+        )
     shape: Bent | None = None
     for _ in range(MOST_SHAPES):
         try:

@@ -27,14 +27,14 @@ from torsade.motion.equilibrium import Bent, bent_until
 from torsade.motion.grips import gripped
 from torsade.motion.inertial import Inertial
 
-__all__ = ["NO_SHAPE", "Broken", "phase_diagram", "snapped"]
+__all__ = ["NO_SHAPE", "Rods", "phase_diagram", "snapped"]
 
 NO_SHAPE = 0
 """Pieces where a rod of that twist does not bend so far."""
 
 
 @dataclass(frozen=True)
-class Broken:
+class Rods:
     """The rods of a diagram.
 
     Attributes
@@ -64,7 +64,7 @@ class Broken:
         return bending_time(Rod.of(self.material, self.section.h, self.length), self.length / 2)
 
 
-def snapped(rods: Broken, shape: Bent) -> Cascade:
+def snapped(rods: Rods, shape: Bent) -> Cascade:
     """The cascade of the rod that is just as strong as breaks at this shape, in the middle.
 
     Parameters
@@ -85,7 +85,7 @@ def snapped(rods: Broken, shape: Bent) -> Cascade:
 
 
 def phase_diagram(
-    rods: Broken, twists: Sequence[float] | Floats, curvatures: Sequence[float] | Floats, workers: int = 1
+    rods: Rods, twists: Sequence[float] | Floats, curvatures: Sequence[float] | Floats, workers: int = 1
 ) -> Ints:
     """Number of pieces at every twist and limit curvature, shape (n_twists, n_curvatures).
 
@@ -111,7 +111,7 @@ def phase_diagram(
     return np.array(rows, dtype=np.int64).reshape(len(jobs), len(limits))
 
 
-def _row(rods: Broken, twist: float, limits: Floats) -> list[int]:
+def _row(rods: Rods, twist: float, limits: Floats) -> list[int]:
     """Pieces at one twist [rad], bent from one limit curvature [1/m] to the next."""
     fiber = rod_fiber(rods.material, rods.section, rods.length, rods.edges)
     pieces = [NO_SHAPE] * len(limits)

@@ -5,7 +5,8 @@ One line is one rod that was broken; docs/fracture-theory.md describes the colum
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import math
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,6 +38,9 @@ TRIALS = Kind("trials", "trials.csv", "a table of trials", "split it", "one tria
 
 TOLERANCE = 0.05
 """By how much of the rod's length pieces may be longer than it together, for they are measured one by one."""
+
+MOST_STRAIN = 0.2
+"""Largest strain at the surface, of bending or of twist, that anything which breaks like a rod can have."""
 
 CHECK = "check the unit in the heading and the length of the rod"
 
@@ -109,6 +113,9 @@ def _trials(rows: Iterable[Row], rod: Rod) -> Iterable[Trial]:
         lengths = _lengths(row, rod)
         kept = tuple(x for x in lengths if x > rod.h)
         twist = _one(row, "twist")
+        limit_curvature = _least(row, "limit_curvature")
+        _check_strain(row, "twist", twist, MOST_STRAIN * rod.L / rod.h, math.degrees, "deg")
+        _check_strain(row, "limit_curvature", limit_curvature, MOST_STRAIN / rod.h, float, "1/m")
         yield Trial(
             where=row.where,
             pieces=_pieces(row, kept),
@@ -117,7 +124,7 @@ def _trials(rows: Iterable[Row], rod: Rod) -> Iterable[Trial]:
             twist=0.0 if twist is None else twist,
             end_distance=_within(row, "end_distance", rod),
             end_distance_error=_least(row, "end_distance_error") or 0.0,
-            limit_curvature=_least(row, "limit_curvature"),
+            limit_curvature=limit_curvature,
             speed=_least(row, "speed", above=True),
         )
 
@@ -135,6 +142,17 @@ def _least(row: Row, name: str, above: bool = False) -> float | None:
         allowed = "a number above 0" if above else "0 or more"
         raise TorsadeError(f"{row.where} has {name} = {value:g} in SI units; give {allowed}")
     return value
+
+
+def _check_strain(
+    row: Row, name: str, value: float | None, most: float, shown: Callable[[float], float], unit: str
+) -> None:
+    """Refuse a twist or a curvature that is above what any rod of this radius bears."""
+    if value is not None and abs(value) > most:
+        raise TorsadeError(
+            f"{row.where} has {name} = {shown(value):.4g} {unit}, and no rod of this length and radius bears "
+            f"more than {shown(most):.4g} {unit}; check the unit in the heading"
+        )
 
 
 def _within(row: Row, name: str, rod: Rod) -> float | None:

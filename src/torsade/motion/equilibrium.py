@@ -8,6 +8,7 @@ ends are brought to a distance from each other.
 
 from __future__ import annotations
 
+import contextlib
 import math
 from typing import NamedTuple
 
@@ -25,7 +26,7 @@ from torsade.motion.supports import Fiber, Support, chain, controls_at, shape_al
 from torsade.motion.trust import minimise, newton
 from torsade.rod.elasticity import hinge_curvature
 
-__all__ = ["Bent", "Range", "bent", "bent_until", "limit_curvature"]
+__all__ = ["Bent", "Range", "bent", "bent_until", "curvature_at_distance"]
 
 PIVOT = Support("plane")
 """A grip of the twist device."""
@@ -146,8 +147,9 @@ def bent(
     """The equilibrium at an end distance [m] and a total twist [rad], on the branch of the planar one.
 
     The untwisted fiber is bent first, in the plane of its end tangents and towards +y, then twisted. With an
-    equilibrium `near` of the same fiber the path starts there, and is shorter. With `rotation` the angle
-    between the grips [rad] is given, in place of the twist.
+    equilibrium `near` of the same fiber the path starts there, and is shorter; where it does not lead to the
+    end, the planar arch is tried. With `rotation` the angle between the grips [rad] is given, in place of the
+    twist.
 
     Raises
     ------
@@ -170,15 +172,17 @@ def bent(
     def given(d: float, torque: float, angle: float) -> Controls:
         return controls_at(problem, (d, 0.0, 0.0), torque=torque, rotation=angle)
 
-    if near is None:
-        begin = given(d, 0.0, 0.0)
-        shape = minimise(problem, _arch(problem, d), begin)
-    else:
+    wanted = given(d, problem.C * total_twist, 0.0 if rotation is None else rotation)
+    if near is not None:
         begin = given(near.end_distance / fiber.length, near.shape.torque, near.rotation)
-        shape = near.shape
-    turned = 0.0 if rotation is None else rotation
-    path = Path(begin, given(d, problem.C * total_twist, turned))
-    return _measured(fiber, problem, _followed(problem, shape, path), path.stop)
+        with contextlib.suppress(TorsadeError):
+            shape = _followed(problem, near.shape, Path(begin, wanted))
+            # A long step to a nearly straight arch can go through the straight fiber to the other side.
+            if shape.edge[0, 1] * near.shape.edge[0, 1] > 0.0:
+                return _measured(fiber, problem, shape, wanted)
+    begin = given(d, 0.0, 0.0)
+    shape = minimise(problem, _arch(problem, d), begin)
+    return _measured(fiber, problem, _followed(problem, shape, Path(begin, wanted)), wanted)
 
 
 def bent_until(fiber: Fiber, kappa_max: float, total_twist: float = 0.0, near: Bent | None = None) -> Bent:
@@ -228,7 +232,9 @@ class Range(NamedTuple):
     high: float
 
 
-def limit_curvature(fiber: Fiber, end_distance: float, total_twist: float = 0.0, error: float = 0.0) -> Range:
+def curvature_at_distance(
+    fiber: Fiber, end_distance: float, total_twist: float = 0.0, error: float = 0.0
+) -> Range:
     """Largest curvature of a fiber seen to break at an end distance [m], known within an error [m].
 
     The range is that between the two distances: curvature falls as the ends part, and steeply when the fiber

@@ -4,7 +4,8 @@
 
 Bending and twist are stored as everywhere in this package. Nodes carry mass, edges the rotary inertia rho J l
 of their spin. That of bending, rho I, is left out, as in thesis 3.5, and with it the couple rho J omega t_t
-of the spin's turning axis: both are smaller than what is kept by about (h/lambda)^2 at wavelength lambda.
+of the spin's turning axis. At wavelength lambda rotary inertia slows bending waves by (pi^2/2) (h/lambda)^2,
+edges of length l by (pi^2/3) (l/lambda)^2.
 
 Ends are those of `torsade.motion.ends`: free, hinged (`clamp`), clamped (with tangent=True), or moved.
 A clamp holds the edge at the end, so that the fiber bends from the middle of that edge on; with

@@ -104,7 +104,7 @@ class BendTwist(Still):
         return Fiber(self.length, self.nodes - 1, B, C)
 
     def solve(self) -> Found:
-        from torsade.motion.equilibrium import bent, limit_curvature
+        from torsade.motion.equilibrium import bent, curvature_at_distance
 
         found = bent(self.fiber, self.end_distance, self.twist, rotation=self.rotation)
         a, state = found.assembled()
@@ -122,7 +122,7 @@ class BendTwist(Still):
             "least_stiffness_N": found.stiffness(),
         }
         if self.end_distance_error is not None:
-            within = limit_curvature(
+            within = curvature_at_distance(
                 self.fiber, self.end_distance, found.total_twist, self.end_distance_error
             )
             numbers["kappa_max_range_per_m"] = [within.low, within.high]

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
 from torsade.errors import QuantityError, TorsadeError, quoted
-from torsade.units import Dimension
+from torsade.units import Dimension, indefinite
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
@@ -61,7 +61,7 @@ def sentence(spec: type[Spec], error: ValidationError) -> str:
         word, key = bounds[kind]
         field = spec.model_fields[name]
         dimension = dimension_of(field)
-        what = f"a {dimension.name}" if dimension else "a number"
+        what = indefinite(dimension.name) if dimension else "a number"
         unit = f" {dimension.unit}" if dimension and dimension.unit else ""
         return f"{name} is {given}; give {what} {word} {quoted(context[key])}{unit}"
     return f"{name} is {given}; {_expected(spec, name)}"
@@ -80,5 +80,5 @@ def _expected(spec: type[Spec], name: str) -> str:
     field = spec.model_fields[name]
     dimension = dimension_of(field)
     if dimension:
-        return f'give a {dimension.name} such as "{dimension.example}"'
+        return f'give {indefinite(dimension.name)} such as "{dimension.example}"'
     return "give a whole number" if "int" in str(field.annotation) else "give text"

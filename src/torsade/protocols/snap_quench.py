@@ -98,7 +98,7 @@ class SnapQuench(Breakable):
         check_frames(self.frames + 1, self.edges + 1)
         cascade = self.driven()
         most = most_breaks(cascade.motion.assembly, self.least_fragment)
-        frames = PieceFrames(cascade, max(most, 1) + 1)
+        frames = PieceFrames(cascade, most)
         return Trial(
             cascade,
             NAMES,

@@ -47,7 +47,7 @@ class SnapTwist(Breakable):
         check_frames(self.frames + 1, self.edges + 1)
         cascade, at_limit = self.broken()
         most = most_breaks(cascade.motion.assembly, self.least_fragment)
-        frames = PieceFrames(cascade, max(most, 1), grips=1)
+        frames = PieceFrames(cascade, most, grips=1)
         return Trial(
             cascade,
             NAMES,

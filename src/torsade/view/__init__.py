@@ -1,4 +1,4 @@
-"""Pictures and plots of a dataset; the libraries that draw are imported when something is drawn.
+"""Pictures, movies and plots of a dataset; the libraries that draw are imported when something is drawn.
 
 >>> import torsade as ts
 >>> ts.view.plot_separation.__name__
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from torsade.view.battery import draw_battery, plot_battery
     from torsade.view.cascade import along_rod, draw_pieces, pieces_at, plot_cascade
+    from torsade.view.film import movie
     from torsade.view.plots import plot_move, plot_separation, plot_swing, plot_tightening
     from torsade.view.scene import render, render_result
 
@@ -20,6 +21,7 @@ __all__ = [
     "along_rod",
     "draw_battery",
     "draw_pieces",
+    "movie",
     "pieces_at",
     "plot_battery",
     "plot_cascade",
@@ -37,6 +39,7 @@ _HOMES = {
     "draw_battery": "torsade.view.battery",
     "plot_battery": "torsade.view.battery",
     "draw_pieces": "torsade.view.cascade",
+    "movie": "torsade.view.film",
     "plot_cascade": "torsade.view.cascade",
     "plot_move": "torsade.view.plots",
     "plot_separation": "torsade.view.plots",

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from torsade.view._extra import require
 
 if TYPE_CHECKING:
-    from matplotlib.colors import LinearSegmentedColormap
+    from matplotlib.colors import LinearSegmentedColormap, ListedColormap
 
 STRAIN_MAX = 0.70
 
@@ -107,3 +107,16 @@ def strain_colormap() -> LinearSegmentedColormap:
     from matplotlib.colors import LinearSegmentedColormap
 
     return LinearSegmentedColormap.from_list("torsade.strain", list(STRAIN_TABLE / 255.0), N=1401)
+
+
+def stress_colormap() -> ListedColormap:
+    """Stress over strength, 0 to 1: yellow without stress, black at the strength."""
+    shades = require("matplotlib").colormaps["inferno_r"](np.linspace(0.13, 1.0, 256))
+    from matplotlib.colors import ListedColormap
+
+    return ListedColormap(shades, name="torsade.stress")
+
+
+def stress_colour(ratio: ArrayLike) -> NDArray[np.float64]:
+    """sRGB colour (..., 3), each channel 0..1, of stress over strength (...,), held outside 0 to 1."""
+    return np.asarray(stress_colormap()(np.asarray(ratio, dtype=np.float64))[..., :3])

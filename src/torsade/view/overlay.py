@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 from torsade.view._extra import require
 from torsade.view.arrows import Arrow, draw_arrows
 from torsade.view.camera import View
-from torsade.view.colours import STRAIN_MAX, strain_colormap
+from torsade.view.colours import STRAIN_MAX, strain_colormap, stress_colormap
 
 Floats = NDArray[np.float64]
+Pixels = NDArray[np.uint8]
 INK = "#262a2e"
 FONT = {"font.family": "sans-serif", "font.sans-serif": ["Helvetica", "Arial", "DejaVu Sans"]}
 BAR_WIDTH, BAR_HEIGHT = 0.30, 0.016
@@ -53,24 +54,36 @@ def draw_over(
     """
     if not (bar or marks or arrows):
         return picture
+
+    def draw(figure: Any, axes: Any) -> None:
+        draw_arrows(axes, arrows, view, strands, radius)
+        pixels = [view.pixels(x) for x in strands]
+        for mark in marks:
+            _draw_mark(axes, mark, view, pixels, radius * view.scale(strands[mark.strand]))
+        if bar:
+            draw_bar(figure, emptiest_corner(np.min(picture, axis=2) < 0.98), view.size[1] / 100.0, STRAIN)
+
+    layer = drawn((picture.shape[1], picture.shape[0]), draw) / 255.0
+    alpha = layer[:, :, 3:]
+    return np.asarray(picture * (1.0 - alpha) + layer[:, :, :3] * alpha)
+
+
+def drawn(size: tuple[int, int], draw: Callable[[Any, Any], None]) -> Pixels:
+    """What is drawn on a transparent sheet of that width and height: (height, width, 4) of RGBA, 0 to 255.
+
+    `draw` is given a figure and axes over all of it that count pixels from the lower left.
+    """
     figure_module, agg = require("matplotlib.figure"), require("matplotlib.backends.backend_agg")
-    height, width = picture.shape[:2]
+    width, height = size
     with require("matplotlib").rc_context(FONT):
         figure = figure_module.Figure(figsize=(width / 100.0, height / 100.0), dpi=100, facecolor="none")
         canvas = agg.FigureCanvasAgg(figure)
         axes = figure.add_axes((0, 0, 1, 1), facecolor="none")
         axes.set(xlim=(0, width), ylim=(0, height))
         axes.axis("off")
-        draw_arrows(axes, arrows, view, strands, radius)
-        pixels = [view.pixels(x) for x in strands]
-        for mark in marks:
-            _draw_mark(axes, mark, view, pixels, radius * view.scale(strands[mark.strand]))
-        if bar:
-            _draw_bar(figure, picture)
+        draw(figure, axes)
         canvas.draw()
-        layer = np.asarray(canvas.buffer_rgba(), dtype=np.float64) / 255.0
-    alpha = layer[:, :, 3:]
-    return np.asarray(picture * (1.0 - alpha) + layer[:, :, :3] * alpha)
+        return np.asarray(canvas.buffer_rgba())
 
 
 def _draw_mark(axes: Any, mark: Mark, view: View, pixels: Sequence[Floats], radii: Floats) -> None:
@@ -112,30 +125,50 @@ def _in_frame(pixels: Floats, node: int, size: tuple[int, int]) -> int | None:
     return int(candidates[np.argmin(np.abs(candidates - node))]) if len(candidates) else None
 
 
-def _draw_bar(figure: Any, picture: Floats) -> None:
-    """The strain colour bar in the emptiest corner."""
-    unit = picture.shape[0] / 100.0
-    left, bottom = _emptiest_corner(picture)
-    box = figure.add_axes((left, bottom, BAR_WIDTH, BAR_HEIGHT))
+class Bar(NamedTuple):
+    """What a colour bar explains: values from 0 to `top`, their colours, ticks and a title."""
+
+    colormap: Callable[[], Any]
+    top: float
+    ticks: tuple[float, ...]
+    title: str
+
+
+STRAIN = Bar(
+    strain_colormap,
+    STRAIN_MAX,
+    (0.0, 0.2, 0.4, 0.6),
+    r"strain  $\log\,(1 + \sqrt{\varepsilon\!:\!\varepsilon})$",
+)
+STRESS = Bar(stress_colormap, 1.0, (0.0, 0.5, 1.0), "stress / strength")
+
+
+def draw_bar(figure: Any, place: tuple[float, float], unit: float, bar: Bar) -> None:
+    """A colour bar with its lower left corner at a place, in fractions of the frame.
+
+    `unit` is a hundredth of the frame's height [pixels].
+    """
+    box = figure.add_axes((*place, BAR_WIDTH, BAR_HEIGHT))
     box.imshow(
         np.linspace(0, 1, 1024)[None],
-        cmap=strain_colormap(),
+        cmap=bar.colormap(),
         aspect="auto",
-        extent=(0.0, STRAIN_MAX, 0.0, 1.0),
+        extent=(0.0, bar.top, 0.0, 1.0),
         interpolation="bilinear",
     )
-    box.set(yticks=[], xticks=[0.0, 0.2, 0.4, 0.6], xticklabels=["0", "0.2", "0.4", "0.6"])
+    box.set(yticks=[], xticks=bar.ticks, xticklabels=[f"{tick:g}" for tick in bar.ticks])
     box.tick_params(length=0.5 * unit, width=0.12 * unit, pad=0.5 * unit, labelsize=1.75 * unit, colors=INK)
     for spine in box.spines.values():
         spine.set(linewidth=0.12 * unit, color=INK)
-    title = r"strain  $\log\,(1 + \sqrt{\varepsilon\!:\!\varepsilon})$"
-    box.set_title(title, fontsize=1.9 * unit, color=INK, pad=0.9 * unit, loc="left")
+    box.set_title(bar.title, fontsize=1.9 * unit, color=INK, pad=0.9 * unit, loc="left")
 
 
-def _emptiest_corner(picture: Floats) -> tuple[float, float]:
-    """Left and bottom of the bar, in fractions of the frame, where it covers least; bottom left if equal."""
-    height, width = picture.shape[:2]
-    ink = np.min(picture, axis=2) < 0.98
+def emptiest_corner(ink: NDArray[np.bool_]) -> tuple[float, float]:
+    """Left and bottom of a bar, in fractions of the frame, where it covers least ink (height, width).
+
+    Bottom left if equal.
+    """
+    height, width = ink.shape
     edge = 0.045
     best, place = np.inf, (edge, edge + 0.04)
     for bottom in (edge + 0.04, 1.0 - edge - 0.06):

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +14,6 @@ from torsade.view._extra import require
 from torsade.view.arrows import Arrow
 from torsade.view.camera import (
     SAMPLE,
-    VIEW_ANGLE,
     View,
     best_side,
     frame,
@@ -25,6 +23,7 @@ from torsade.view.camera import (
 from torsade.view.colours import strain_colour, strand_colour
 from torsade.view.overlay import Mark, draw_over
 from torsade.view.shading import LAMP, Pieces, lit, occlusion
+from torsade.view.stage import Stage, averaged
 from torsade.view.tube import Mesh, SmoothCurve, smooth_centerline, tube
 
 if TYPE_CHECKING:
@@ -33,8 +32,9 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 SUPERSAMPLING = 2
-MARGIN = 16
-"""Rendered beyond the frame on each side [pixels] and cut off, so that no filter meets the border."""
+
+TURNED_AWAY = -0.3
+"""Cosine to the camera below which a vertex of a tube is in no triangle that is seen."""
 
 
 def render(
@@ -147,8 +147,9 @@ def picture(
         colours = [np.tile(strand_colour(s), (len(m.vertices), 1)) for s, m in enumerate(meshes)]
     else:
         colours = [palette(m.at_vertices(v)) for m, v in zip(meshes, values, strict=True)]
-    colours = _lit(meshes, colours, _pieces(curves, loops), view)
-    image = _rasterised(meshes, colours, view)
+    colours = lit_by_lamp(meshes, colours, shadow_pieces(curves, loops), view)
+    with Stage(view, SUPERSAMPLING) as stage:
+        image = averaged(stage.shown(meshes, colours), SUPERSAMPLING)
     if fade > 0:
         image = _faded(image, fade)
     explained = bar and values is not None and palette is strain_colour
@@ -209,7 +210,7 @@ def _view(
     return frame(body, 1.0, size, right, toward, fill)
 
 
-def _pieces(curves: Sequence[SmoothCurve], loops: Sequence[bool]) -> Pieces:
+def shadow_pieces(curves: Sequence[SmoothCurve], loops: Sequence[bool]) -> Pieces:
     """The strands as short pieces that cast shadows, one around each point of the sampled curves."""
     lengths = []
     for curve, loop in zip(curves, loops, strict=True):
@@ -222,17 +223,19 @@ def _pieces(curves: Sequence[SmoothCurve], loops: Sequence[bool]) -> Pieces:
     )
 
 
-def _lit(meshes: Sequence[Mesh], colours: Sequence[Floats], pieces: Pieces, view: View) -> list[Floats]:
+def lit_by_lamp(
+    meshes: Sequence[Mesh], colours: Sequence[Floats], pieces: Pieces, view: View
+) -> list[Floats]:
     """sRGB colours (n, 3) of all vertices as the camera sees them, lit and in each other's shadow."""
     axes = np.array([view.right, view.up, view.toward])
     camera = view.focus + view.distance * view.toward
     result = []
     for mesh, rgb in zip(meshes, colours, strict=True):
         sky, shade = np.zeros((2, len(rgb)))
-        seen = _near_frame(view, mesh.vertices)
-        sky[seen], shade[seen] = occlusion(mesh.vertices[seen], mesh.normals[seen], pieces, 1.0, LAMP @ axes)
         eye = camera - mesh.vertices
         eye /= np.linalg.norm(eye, axis=1, keepdims=True)
+        seen = _near_frame(view, mesh.vertices) & (np.sum(mesh.normals * eye, axis=1) > TURNED_AWAY)
+        sky[seen], shade[seen] = occlusion(mesh.vertices[seen], mesh.normals[seen], pieces, 1.0, LAMP @ axes)
         result.append(lit(rgb, mesh.normals, eye, axes, sky, shade))
     return result
 
@@ -241,47 +244,6 @@ def _near_frame(view: View, x: Floats) -> NDArray[np.bool_]:
     """Which points (n, 3) fall in the frame or within a tenth of it outside."""
     place = view.pixels(x) / np.array(view.size)
     return np.asarray(np.all((place > -0.1) & (place < 1.1), axis=1))
-
-
-def _rasterised(meshes: Sequence[Mesh], colours: Sequence[Floats], view: View) -> Floats:
-    """Draw coloured meshes on white: (height, width, 3) of sRGB from 0 to 1."""
-    pyvista = require("pyvista")
-    width, height = view.size
-    k, wide, high = SUPERSAMPLING, width + 2 * MARGIN, height + 2 * MARGIN
-    with _quiet_vtk():
-        plotter = pyvista.Plotter(off_screen=True, window_size=(k * wide, k * high), lighting="none")
-        try:
-            plotter.background_color = "white"
-            for mesh, rgb in zip(meshes, colours, strict=True):
-                surface = pyvista.PolyData.from_regular_faces(mesh.vertices, mesh.faces)
-                surface.point_data["colour"] = np.round(255.0 * rgb).astype(np.uint8)
-                plotter.add_mesh(surface, scalars="colour", rgb=True, lighting=False)
-            camera = plotter.camera
-            camera.focal_point, camera.up = view.focus, view.up
-            camera.position = view.focus + view.distance * view.toward
-            camera.view_angle = 2.0 * np.degrees(np.arctan(np.tan(0.5 * VIEW_ANGLE) * high / height))
-            plotter.renderer.reset_camera_clipping_range()
-            raw = np.asarray(plotter.screenshot(None, return_img=True))
-        finally:
-            plotter.close()
-    raw = raw[k * MARGIN : -k * MARGIN, k * MARGIN : -k * MARGIN, :3]
-    total = np.zeros((height, width, 3))
-    for row in range(k):
-        for column in range(k):
-            total += raw[row::k, column::k]
-    return total / (255.0 * k * k)
-
-
-@contextmanager
-def _quiet_vtk() -> Iterator[None]:
-    """Keep VTK's remarks about displays and drivers off the console."""
-    logger = require("vtkmodules.vtkCommonCore").vtkLogger
-    before = logger.GetCurrentVerbosityCutoff()
-    logger.SetStderrVerbosity(logger.VERBOSITY_OFF)
-    try:
-        yield
-    finally:
-        logger.SetStderrVerbosity(before)
 
 
 def _faded(image: Floats, fade: float) -> Floats:

@@ -62,23 +62,39 @@ class SmoothCurve(NamedTuple):
     node: Floats
 
 
-def smooth_centerline(x: ArrayLike, closed: bool, spacing: float) -> SmoothCurve:
+def smooth_centerline(
+    x: ArrayLike, closed: bool, spacing: float, parts: ArrayLike | None = None
+) -> SmoothCurve:
     """Smooth curve through the nodes x (n, 3) [m], sampled at most `spacing` [m] apart.
 
-    A closed curve is sampled from node 0 up to, and without, node 0 again.
+    A closed curve is sampled from node 0 up to, and without, node 0 again. With `parts`, how many parts
+    every edge is divided into, these are taken, however long the edges are.
     """
     x = _distinct(np.asarray(x, dtype=np.float64), closed)
     n = len(x)
-    after = np.roll(x, -1, axis=0) if closed else x[1:]
-    chord = np.linalg.norm(after - x[: len(after)], axis=1)
+    chord = _chords(x, closed)
     slope = _slopes(x, chord, closed)
-    pieces = np.maximum(1, np.ceil(chord / spacing - 1e-9)).astype(np.int64)
+    pieces = _divided(chord, spacing) if parts is None else np.asarray(parts, dtype=np.int64)
     edge = np.repeat(np.arange(len(chord)), pieces)
     s = (np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)) / pieces[edge]
     if not closed:
         edge, s = np.append(edge, n - 2), np.append(s, 1.0)
     points, tangents = _hermite(x, slope, chord, edge, s)
     return SmoothCurve(points, tangents, edge + s)
+
+
+def divisions(x: ArrayLike, closed: bool, spacing: float) -> Ints:
+    """How many parts every edge of the polyline x (n, 3) is divided into, each at most `spacing` long."""
+    return _divided(_chords(np.asarray(x, dtype=np.float64), closed), spacing)
+
+
+def _chords(x: Floats, closed: bool) -> Floats:
+    after = np.roll(x, -1, axis=0) if closed else x[1:]
+    return np.asarray(np.linalg.norm(after - x[: len(after)], axis=1))
+
+
+def _divided(chord: Floats, spacing: float) -> Ints:
+    return np.maximum(1, np.ceil(chord / spacing - 1e-9)).astype(np.int64)
 
 
 def _distinct(x: Floats, closed: bool) -> Floats:
@@ -175,6 +191,7 @@ def tube(
     sides: int = 32,
     spacing: float = 0.25,
     rounding: float = 1.0,
+    parts: ArrayLike | None = None,
 ) -> Mesh:
     """Watertight tube around the polyline x.
 
@@ -186,13 +203,14 @@ def tube(
     sides : vertices on a ring
     spacing : distance between rings, at most, in radii
     rounding : radius of the rounded edge of the end caps, in radii: 1 is a hemisphere, near 0 a clean cut
+    parts : rings on every edge, in place of `spacing`: a fiber that moves keeps its triangles
     """
     if not (radius > 0 and sides >= 3 and spacing > 0 and 0 < rounding <= 1):
         raise TorsadeError(
             f"a tube was asked with radius {radius}, {sides} sides, spacing {spacing} and rounding "
             f"{rounding}; radius and spacing must be positive, sides 3 or more, rounding in (0, 1]."
         )
-    curve = smooth_centerline(x, closed, spacing * radius)
+    curve = smooth_centerline(x, closed, spacing * radius, parts)
     u, v = minimal_frame(curve, closed)
     phi = 2.0 * np.pi * np.arange(sides) / sides
     normals = np.cos(phi)[None, :, None] * u[:, None] + np.sin(phi)[None, :, None] * v[:, None]
