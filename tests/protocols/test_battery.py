@@ -35,7 +35,7 @@ def short():
         ({"knot": "4_1", "cut_at": 1}, r"cut_at is 1; give a number below 1"),
         ({"knot": "4_1", "stop": "charged", "cut_at": 0.5}, r"nothing is cut, so cut_at means nothing"),
         ({"knot": "4_1", "stop": "uncut"}, r"stop is 'uncut'; .*choose one of discharged, charged"),
-        ({"knot": "4_1", "uncut": True}, r"there is no field 'uncut'; give stop = charged"),
+        ({"knot": "4_1", "uncut": True}, r"there is no field 'uncut'; give 'stop', with the value charged"),
         ({"knot": "4_1", "length": "1 cm"}, r"no field 'length'; give 'slenderness', L/h"),
         ({"knot": "4_1", "material": "spaghetti"}, r"material 'spaghetti' has no viscosity"),
         ({"knot": "4_1", "nodes": True}, r"nodes is True; give a whole number"),

@@ -70,7 +70,7 @@ class Battery(Driven):
         "length": "there is no field 'length'; give 'slenderness', L/h",
         "force": "nothing pulls a battery, so there is no field 'force'; leave it out",
         "spacing": "there is no field 'spacing'; give 'nodes'",
-        "uncut": "there is no field 'uncut'; give stop = charged",
+        "uncut": "there is no field 'uncut'; give 'stop', with the value charged",
         "centerline": "there is no field 'centerline'; give a knot by name or by a code",
         "time": "there is no field 'time'; did you mean 'duration'?",
     }
@@ -161,7 +161,9 @@ class Battery(Driven):
             )
         if self.stop == "charged" and (self.cut_at is not None or self.duration is not None):
             what = "cut_at" if self.cut_at is not None else "duration"
-            raise TorsadeError(f"with stop = charged nothing is cut, so {what} means nothing; leave it out")
+            raise TorsadeError(
+                f"with 'charged' for stop nothing is cut, so {what} means nothing; leave it out"
+            )
         return self
 
     @property
