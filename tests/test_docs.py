@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 import shlex
+import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -60,6 +62,11 @@ def test_commands_are_found() -> None:
         "movie",
         "trials",
         "material",
+        "sweep",
+        "query",
+        "info",
+        "export",
+        "open",
     }
     assert len(commands()) >= 5
 
@@ -157,6 +164,8 @@ def test_a_command_shown_is_a_valid_specification(line: str) -> None:
         ("knots",),
         ("trials",),
         ("material",),
+        ("sweep",),
+        ("query",),
         ("run", "prison-escape"),
         ("run", "tighten"),
         ("run", "bend-twist"),
@@ -168,6 +177,51 @@ def test_help_comes(words: tuple[str, ...]) -> None:
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith("Usage: torsade")
+
+
+def test_the_example_without_torsade_runs_without_it(stored: Callable[[str], Path], tmp_path: Path) -> None:
+    """The page's second block of Python, where torsade cannot be imported."""
+    shutil.copytree(stored("prison-escape"), tmp_path / "reef.zarr")
+    plain = next(
+        block for block in blocks(ROOT / "docs" / "results.md", "python") if "import xarray" in block
+    )
+    script = "import sys\nsys.modules['torsade'] = None\n" + plain
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", script],
+        capture_output=True,
+        text=True,
+        cwd=tmp_path,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    said = done.stdout.splitlines()
+    assert said[0] == "prison-escape reef 15.0 N"
+    assert said[1].startswith("largest strain of strand B: 0.")
+    assert "position ('time', 'node', 'space') m node positions" in said
+
+
+def test_the_example_with_torsade_runs(
+    stored: Callable[[str], Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All but the window."""
+    shutil.copytree(stored("prison-escape"), tmp_path / "reef.zarr")
+    example = next(b for b in blocks(ROOT / "docs" / "results.md", "python") if "import torsade" in b)
+    monkeypatch.chdir(tmp_path)
+    exec(compile(example.replace("run.show()", ""), "results.md", "exec"), {})
+    assert (tmp_path / "reef.glb").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    "line", [line for line in commands() if line.split()[1] in ("info", "export", "open")]
+)
+def test_a_result_shown_is_described_and_written(
+    line: str, stored: Callable[[str], Path], tmp_path: Path
+) -> None:
+    shutil.copytree(stored("prison-escape"), tmp_path / "reef.zarr")
+    done = subprocess.run(
+        [sys.executable, "-m", *shlex.split(line)], capture_output=True, text=True, check=False, cwd=tmp_path
+    )
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_readme_has_two_commands_for_a_fresh_machine() -> None:

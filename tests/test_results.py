@@ -59,6 +59,7 @@ def test_the_last_frame_that_held(result: ts.Result) -> None:
 def test_plain_xarray_reads_it(tmp_path: Path, result: ts.Result) -> None:
     path = result.save(tmp_path / "reef.zarr")
     with xarray.open_zarr(path, chunks=None) as plain:
+        assert plain.attrs.pop("chunks") == store.chunk_files(path)
         assert plain.load().identical(result.dataset)
 
 

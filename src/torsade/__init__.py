@@ -14,13 +14,14 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from torsade import curve, knots, protocols, topology, view
+    from torsade import curve, knots, protocols, sweep, topology, view
     from torsade.centerline import Centerline
     from torsade.errors import TorsadeError
     from torsade.files import read_centerline, read_csv, write_centerline, write_csv
     from torsade.material import MATERIALS, Material, Section, named_material
-    from torsade.results import Result
+    from torsade.results import Result, open_result
     from torsade.results import open_result as open
+    from torsade.sweep import Sweep
 
 __all__ = [
     "MATERIALS",
@@ -28,15 +29,18 @@ __all__ = [
     "Material",
     "Result",
     "Section",
+    "Sweep",
     "TorsadeError",
     "__version__",
     "curve",
     "knots",
     "named_material",
     "open",
+    "open_result",
     "protocols",
     "read_centerline",
     "read_csv",
+    "sweep",
     "topology",
     "view",
     "write_centerline",
@@ -45,15 +49,17 @@ __all__ = [
 
 __version__ = "0.1.0"
 
-_MODULES = ("curve", "knots", "protocols", "topology", "view")
+_MODULES = ("curve", "knots", "protocols", "sweep", "topology", "view")
 _HOMES = {
     "MATERIALS": "torsade.material",
     "Centerline": "torsade.centerline",
     "Material": "torsade.material",
     "Result": "torsade.results",
     "Section": "torsade.material",
+    "Sweep": "torsade.sweep",
     "TorsadeError": "torsade.errors",
     "named_material": "torsade.material",
+    "open_result": "torsade.results",
     "read_centerline": "torsade.files",
     "read_csv": "torsade.files",
     "write_centerline": "torsade.files",

@@ -13,6 +13,7 @@ import hashlib
 import inspect
 import os
 import sys
+import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -115,9 +116,13 @@ class Kernel:
 
     def __call__(self, *args: Any) -> Any:
         if self._entry is None:
-            with _caching("entries"):
-                self._entry = njit(**self._options)(self.py_func)
+            with _DECLARING, _caching("entries"):
+                self._entry = self._entry or njit(**self._options)(self.py_func)
         return self._entry(*args)
+
+
+_DECLARING = threading.Lock()
+"""The folder of the cache belongs to all threads."""
 
 
 @contextmanager

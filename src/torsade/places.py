@@ -10,6 +10,7 @@ import json
 import os
 import shutil
 import socket
+import stat
 import tempfile
 import time
 import uuid
@@ -27,8 +28,12 @@ __all__ = [
     "part_of",
     "private",
     "replace",
+    "writer",
     "writing",
 ]
+
+LARGEST_DESCRIPTION = 32 * 2**20
+"""Largest zarr.json that is read [bytes]."""
 
 BUSY = (
     "{out} is being written by {owner}; wait for it or give another name, or remove {lock} when no such run "
@@ -48,9 +53,13 @@ def private(path: Path, ending: str) -> Path:
 
 def attributes(path: Path) -> dict[str, Any] | None:
     """Attributes of a result on disk, complete or not; None when the path is nothing of ours."""
+    described = path / "zarr.json"
     try:
-        found = json.loads((path / "zarr.json").read_text(encoding="utf-8"))["attributes"]
-    except (OSError, ValueError, KeyError, TypeError):
+        about = described.stat()
+        if not stat.S_ISREG(about.st_mode) or about.st_size > LARGEST_DESCRIPTION:
+            return None  # a pipe may never end
+        found = json.loads(described.read_text(encoding="utf-8"))["attributes"]
+    except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return None
     ours = isinstance(found, dict) and "protocol" in found and "versions" in found
     return found if ours else None
@@ -109,6 +118,46 @@ def writing(path: Path) -> Iterator[None]:
         ) from None
 
 
+_HELD: set[Path] = set()
+"""Locks of this process."""
+
+
+def writer(out: Path) -> str | None:
+    """Who is writing NAME.zarr or its NAME.zarr.part: a process that lives, or None."""
+    lock = _lock_of(out)
+    return _owner(lock) if lock.exists() else None
+
+
+def _lock_of(out: Path) -> Path:
+    return out.resolve().with_name(out.name + ".lock")
+
+
+def _owner(lock: Path) -> str | None:
+    """Who holds a lock; None when that process has ended."""
+    for _ in range(2):
+        with suppress(OSError, ValueError):
+            number, host = lock.read_text(encoding="utf-8").split()
+            if host != socket.gethostname():
+                return f"process {int(number)} on {host}"
+            return f"process {int(number)}" if _alive(int(number), lock) else None
+        time.sleep(0.05)  # one that is being made has no text yet
+    return None
+
+
+def _alive(process: int, lock: Path) -> bool:
+    if process == os.getpid():
+        return lock in _HELD
+    if os.name == "nt":
+        return True  # there os.kill does not ask, it ends
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        pass  # it belongs to somebody else
+    return True
+
+
 class Lock:
     """NAME.zarr.lock: while it is there, the process that it names writes to NAME.zarr.
 
@@ -125,19 +174,17 @@ class Lock:
         When another process is writing, or the lock cannot be made.
     """
 
-    _held: set[Path] = set()  # noqa: RUF012 - of the whole process
-
     def __init__(self, out: Path, busy: str = BUSY) -> None:
-        self._path = out.resolve().with_name(out.name + ".lock")
+        self._path = _lock_of(out)
         with writing(self._path):
             while not self._made():
-                owner = self._owner()
+                owner = _owner(self._path)
                 if owner is not None:
                     raise TorsadeError(
                         busy.format(out=repr(str(out)), owner=owner, lock=repr(self._path.name))
                     )
                 self._path.unlink(missing_ok=True)
-        self._held.add(self._path)
+        _HELD.add(self._path)
 
     def _made(self) -> bool:
         try:
@@ -148,33 +195,9 @@ class Lock:
             text.write(f"{os.getpid()} {socket.gethostname()}\n")
         return True
 
-    def _owner(self) -> str | None:
-        """Who holds the lock; None when that process has ended."""
-        for _ in range(2):
-            with suppress(OSError, ValueError):
-                number, host = self._path.read_text(encoding="utf-8").split()
-                if host != socket.gethostname():
-                    return f"process {int(number)} on {host}"
-                return f"process {int(number)}" if self._alive(int(number)) else None
-            time.sleep(0.05)  # one that is being made has no text yet
-        return None
-
-    def _alive(self, process: int) -> bool:
-        if process == os.getpid():
-            return self._path in self._held
-        if os.name == "nt":
-            return True  # there os.kill does not ask, it ends
-        try:
-            os.kill(process, 0)
-        except ProcessLookupError:
-            return False
-        except OSError:
-            pass  # it belongs to somebody else
-        return True
-
     def release(self) -> None:
         """Let others write; a second time does nothing."""
-        if self._path in self._held:
-            self._held.remove(self._path)
+        if self._path in _HELD:
+            _HELD.remove(self._path)
             with suppress(OSError):
                 self._path.unlink()

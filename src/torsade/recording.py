@@ -3,25 +3,26 @@
 from __future__ import annotations
 
 import json
-import platform
 import shutil
 import time
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
-from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from torsade import __version__, places, store
+from torsade import places, provenance, store, vetting
 from torsade.arrays import Floats
 from torsade.errors import TorsadeError, counted, quoted
 from torsade.results import Result
-from torsade.variables import SAMPLE, SINGLE_PRECISION, VARIABLES
+from torsade.variables import FORMAT, SAMPLE, SINGLE_PRECISION, VARIABLES
 
-__all__ = ["SAME_VERSIONS", "Recording", "versions"]
+if TYPE_CHECKING:
+    from torsade.motion.moving import Motion
+
+__all__ = ["Recording"]
 
 FLUSH_EVERY = 0.5
 """Least time between writes to disk [s]: frames that come faster are written together."""
@@ -29,8 +30,8 @@ FLUSH_EVERY = 0.5
 PROGRESS = ("done", "sampled", "wall", "steps")
 """What the restart file holds besides what the motion saves."""
 
-SAME_VERSIONS = ("torsade", "numba", "numpy")
-"""A run goes on with these in the versions that it was begun with: others may round otherwise."""
+NEEDED = ("created", "done", "machine", "resumed", "spec", "status", "steps", "sampled", "wall_s")
+"""Attributes without which a run cannot be gone on with."""
 
 Frame = Mapping[str, "float | Floats"]
 
@@ -63,8 +64,9 @@ class Recording:
             )
             for name in names
         }
-        self._fixed = {name: (*value, _about(name)) for name, value in fixed.items()}
-        self.attrs = attrs | {"created": _now(), "versions": versions(), "status": "running"}
+        self._fixed = dict(fixed)
+        begun = {"format": FORMAT, "created": _now(), **provenance.present(), "resumed": []}
+        self.attrs = attrs | begun | {"status": "running"}
         self.done = self.sampled = 0
         self.saved: dict[str, NDArray[Any]] | None = None
         self._restart: tuple[str, ...] = ()
@@ -121,9 +123,9 @@ class Recording:
     def _start(self, part: Path, resume: bool, overwrite: bool) -> None:
         """Take over the growing folder that is there, or make one under a name of its own."""
         found = places.attributes(part) or {}
-        done = int(found.get("done", 0))
+        done = found.get("done", 0)
         if done and resume:
-            self._go_on(part, found)
+            self._go_on(part)
             return
         if done and not overwrite:
             raise TorsadeError(
@@ -139,31 +141,35 @@ class Recording:
         found = places.attributes(out)
         if found is None or found.get("status") != "complete" or places.part_of(out).exists():
             return False
+        found, _ = vetting.vetted(out)
         _same_run(self.attrs, found, out)
         self._out, self.complete = out, True
         return True
 
-    def _go_on(self, part: Path, found: Mapping[str, Any]) -> None:
+    def _go_on(self, part: Path) -> None:
         """Take over the frames and the state of an interrupted run."""
+        found, _ = vetting.vetted(part)
+        missing = [name for name in NEEDED if name not in found]
+        if missing:
+            raise TorsadeError(f"{str(part)!r} does not say {missing[0]!r}; give --overwrite to begin anew")
         _same_run(self.attrs, found, part)
-        _same_versions(self.attrs, found, part)
-        self.attrs["created"] = found["created"]
+        provenance.check_same(found, part)
+        for name in ("created", "versions", "machine", "resumed"):
+            self.attrs[name] = found[name]
         self.part = part
         if found["status"] == "complete":  # only its name is missing
             assert self._out is not None
             store.complete(part, self._out, {}, {})
             self.complete = True
         elif store.has_restart(part):
-            saved = store.read_restart(part, (*self._restart, *PROGRESS))
-            self.done, self.sampled = self._written = int(saved["done"]), int(saved["sampled"])
-            self.wall = float(saved["wall"])
-            self._steps = int(saved["steps"])
-            self.saved = {name: saved[name] for name in self._restart}
-            store.set_attributes(part, self._progress())
+            self._take_over(part)
+            again = {"at": _now(), "done": self.done, **provenance.present()}
+            self.attrs["resumed"] = [*found["resumed"], again]
+            store.set_attributes(part, self._progress() | {"resumed": self.attrs["resumed"]})
             self._read(part)
-        elif int(found["done"]) == len(self._arrays["time"]):  # only the end is missing
-            self.done, self.sampled = self._written = int(found["done"]), int(found["sampled"])
-            self._steps, self.wall = int(found["steps"]), float(found["wall_s"])
+        elif found["done"] == len(self._arrays["time"]):  # only the end is missing
+            self.done, self.sampled = self._written = found["done"], found["sampled"]
+            self._steps, self.wall = found["steps"], float(found["wall_s"])
             self._read(part)
         else:
             raise TorsadeError(
@@ -171,10 +177,34 @@ class Recording:
                 "for the frames, or give --overwrite (overwrite=True) in place of resume to begin anew"
             )
 
+    def _take_over(self, part: Path) -> None:
+        """Read the restart file, and refuse one that counts frames which there cannot be."""
+        saved = store.read_restart(part, (*self._restart, *PROGRESS))
+        with store.sound_restart(part):
+            self.done, self.sampled = self._written = int(saved["done"]), int(saved["sampled"])
+            self.wall, self._steps = float(saved["wall"]), int(saved["steps"])
+            samples = max((len(a) for name, a in self._arrays.items() if name.startswith(SAMPLE)), default=0)
+            if not (0 < self.done <= len(self._arrays["time"]) and 0 <= self.sampled <= samples):
+                raise ValueError
+        self.saved = {name: saved[name] for name in self._restart}
+
+    def recover(self, motion: Motion) -> None:
+        """Bring a motion, as it is at t = 0, to where the frames that were taken over end."""
+        assert self.saved is not None
+        assert self.part is not None
+        with store.sound_restart(self.part):
+            motion.recover(self.saved)
+
     def _read(self, part: Path) -> None:
         before = Result.open(part).dataset
         for name, values in self._arrays.items():
-            values[: self._count(name)] = before[name].values
+            taken = values[: self._count(name)]
+            if name not in before or before[name].shape != taken.shape:
+                raise TorsadeError(
+                    f"{str(part)!r} does not hold {name!r} as this run records it; it is damaged: give "
+                    "--overwrite (overwrite=True) in place of resume to begin anew"
+                )
+            taken[:] = before[name].values
 
     def add(self, frame: Frame) -> None:
         """Record a frame."""
@@ -304,13 +334,13 @@ class Recording:
             cut = values if sizes is None else values[: sizes[dims[0]]]
             variables[name] = (dims, cut, _about(name))
         time_axis = {"time": variables.pop("time")}
-        return xarray.Dataset(variables | self._fixed, coords=time_axis, attrs=dict(self.attrs))
+        for name, (given, values) in self._fixed.items():
+            variables[name] = (given, values, _about(name))
+        return xarray.Dataset(variables, coords=time_axis, attrs=dict(self.attrs))
 
 
 def _about(name: str) -> dict[str, str]:
     """Unit and meaning of a variable."""
-    if name not in VARIABLES:
-        return {}
     _, unit, meaning = VARIABLES[name]
     return {"units": unit, "long_name": meaning}
 
@@ -339,27 +369,9 @@ def _same_run(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) ->
         )
 
 
-def _same_versions(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) -> None:
-    """Refuse to mix what different versions compute."""
-    for name in SAME_VERSIONS:
-        now, then = asked["versions"][name], found["versions"].get(name)
-        if now != then:
-            raise TorsadeError(
-                f"{str(path)!r} was begun with {name} {then}, and this is {name} {now}, which may round "
-                "otherwise; go on with the earlier version, or give --overwrite (overwrite=True) in place of "
-                "resume to begin anew"
-            )
-
-
 def _brief(value: object) -> str:
     return quoted(value, 200)
 
 
 def _now() -> str:
     return datetime.now(UTC).isoformat(timespec="microseconds")
-
-
-def versions() -> dict[str, str]:
-    """Of what results are computed with."""
-    packages = {name: version(name) for name in ("numpy", "numba", "zarr")}
-    return {"torsade": __version__, "python": platform.python_version()} | packages

@@ -1,25 +1,29 @@
 """Results: labelled arrays with what was asked and what came of it, in zarr folders that anyone can open.
 
-A result is an `xarray.Dataset` in SI units. Histories have the dimension `time`; `twist` also `fiber`.
-Frames are `position` [m] and `velocity` [m/s] `(time, node, space)`, `log_strain (time, node)` and its parts
-`strain_stretch`, `strain_bend` and `strain_twist`, and `self_torque (time, edge)` [N], edges counted through
-all fibers, stored in single precision. Samples, `sample_time (sample)` [s] and `sample_separation (sample)`
-[m], are finer in time and do not depend on frames: what a run concludes comes from them. `node_start
-(fiber_bound)` says where each fiber begins, `closed (fiber)` which are closed.
+A result is an `xarray.Dataset` in SI units; every variable has the attributes `units` and `long_name`.
+Histories have the dimension `time`; `twist` also `fiber`. Frames are `position` [m] and `velocity` [m/s]
+`(time, node, space)`, `log_strain (time, node)` and its parts `strain_stretch`, `strain_bend` and
+`strain_twist`, and `self_torque (time, edge)` [N], edges counted through all fibers, stored in single
+precision. Samples, `sample_time (sample)` [s] and `sample_separation (sample)` [m], are finer in time and do
+not depend on frames: what a run concludes comes from them. `node_start (fiber_bound)` says where each fiber
+begins, `closed (fiber)` which are closed. Fibers at rest have one frame, at t = 0.
 
-The attributes hold `protocol`, `spec` and `model` (JSON: what was asked, and the numbers that it meant),
-`knot` where there is one, `radius` [m], `versions`, `created`, `status`, `done` (frames), `sampled`, `steps`,
-`wall_s`, and what the protocol concludes, such as `c_f`. A run written as it went on also has
-`chunks`, the number of files that hold each variable.
+The attributes hold `format`, `protocol`, `spec` and `model` (JSON: what was asked, and the numbers that it
+meant), `knot` where there is one, `radius` [m], `seed` where chance has a part, `status`, `done` (frames),
+`sampled`, `steps`, what the protocol concludes, such as `c_f`, and where the numbers come from: `created`,
+`wall_s`, `versions`, `kernels`, `machine` and, for every time that the run was gone on with, an entry of
+`resumed`. On disk there is `chunks` too, the number of files that hold each variable.
 """
 
 from __future__ import annotations
 
 import json
+import os
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from torsade import places, store
+from torsade import places, reading, store
 from torsade.errors import TorsadeError, counted
 
 if TYPE_CHECKING:
@@ -29,6 +33,12 @@ __all__ = ["Result", "open_result"]
 
 READ_AT_ONCE = 50_000_000
 """Largest array that opening a result reads [bytes]."""
+
+READ_IN_ALL = 10 * READ_AT_ONCE
+"""Most that opening a result reads [bytes]."""
+
+PROVENANCE = ("created", "wall_s", "seed", "versions", "kernels", "machine", "resumed")
+"""Attributes that say where numbers come from."""
 
 
 class Result:
@@ -45,15 +55,14 @@ class Result:
     def open(cls, path: str | Path) -> Result:
         """Read a result from NAME.zarr, or what is done of one from NAME.zarr.part.
 
-        Frames of more than `READ_AT_ONCE` bytes stay on disk until they are used.
+        Variables of more than `READ_AT_ONCE` bytes stay on disk until they are used.
 
         Raises
         ------
         TorsadeError
-            When there is no result at that path.
+            When there is no result at that path, or one that is damaged or that no run wrote; of variables
+            that stay on disk, when they are used.
         """
-        import xarray
-
         path = Path(path)
         if places.attributes(path) is None:
             part = places.part_of(path) if path.name else path
@@ -61,17 +70,10 @@ class Result:
                 raise TorsadeError(
                     f"{str(path)!r} is not complete; open {str(part)!r} for what is done of it"
                 )
-            what = "is not a result of torsade" if path.exists() else "does not exist"
-            raise TorsadeError(f"{str(path)!r} {what}; give a folder NAME.zarr written by a run")
-        stored = xarray.open_dataset(path, engine="zarr", chunks=None)
-        ends = {"time": "done", "sample": "sampled"}
-        recorded = {d: slice(0, int(stored.attrs[name])) for d, name in ends.items() if d in stored.dims}
-        result = cls(stored.isel(recorded))
-        for variable in result._dataset.variables.values():
-            if variable.nbytes <= READ_AT_ONCE:
-                variable.load()
-            else:
-                result._behind = path
+            raise TorsadeError(f"{str(path)!r} {_what_else(path)}; give a folder NAME.zarr written by a run")
+        dataset, late = reading.read(path, READ_AT_ONCE, READ_IN_ALL)
+        result = cls(dataset)
+        result._behind = path if late else None
         return result
 
     @property
@@ -96,9 +98,21 @@ class Result:
         return str(self._dataset.attrs["protocol"])
 
     @property
+    def status(self) -> str:
+        """How far it came: running, interrupted, failed or complete."""
+        return str(self._dataset.attrs["status"])
+
+    @property
     def complete(self) -> bool:
         """Whether the run came to its end."""
-        return bool(self._dataset.attrs["status"] == "complete")
+        return self.status == "complete"
+
+    @property
+    def provenance(self) -> dict[str, Any]:
+        """Where the numbers come from: when it was begun, computing time [s], seed, versions, kernels,
+        machine, and each time that it was gone on with."""
+        attrs = self._dataset.attrs
+        return {name: attrs[name] for name in PROVENANCE if name in attrs}
 
     @property
     def frames(self) -> int:
@@ -142,11 +156,26 @@ class Result:
                     "another name"
                 )
             new = places.private(out, "new")
-            store.create(self.dataset, new)
+            store.save(self.dataset, new)
             places.replace(new, out)
         finally:
             lock.release()
         return out
+
+    def export(
+        self,
+        to: str,
+        path: str | Path,
+        frames: str | int | slice | None = None,
+        *,
+        overwrite: bool = False,
+    ) -> list[Path]:
+        """Write the result for other programs: vtk, gltf, csv or npz; see `torsade.export.export`."""
+        return list(_above("torsade.export").export(self, to, path, frames, overwrite=overwrite))
+
+    def show(self, picture: str | Path | None = None, frame: int | None = None) -> None:
+        """Show all frames in a window, or draw one to a picture; see `torsade.view.show`."""
+        _above("torsade.view").show(self, picture, frame)
 
     def _number(self, name: str) -> float | None:
         value = self._dataset.attrs.get(name)
@@ -157,6 +186,22 @@ class Result:
         last = float(self._dataset["time"][-1]) if self.frames else 0.0
         what = f" on {attrs['knot']}" if "knot" in attrs else ""
         return f"<Result of {attrs['protocol']}{what}: {self.frames} frames to t = {last:.4g} s>"
+
+
+def _what_else(path: Path) -> str:
+    """What a path is that is no result."""
+    try:
+        (path / "zarr.json").stat()
+    except PermissionError:
+        return "may not be read (permission denied)"
+    except (OSError, ValueError):
+        return "is not a result of torsade" if os.path.lexists(path) else "does not exist"
+    return "is not a result of torsade" if os.access(path / "zarr.json", os.R_OK) else "may not be read"
+
+
+def _above(module: str) -> Any:
+    """A module that stands above results, imported when something is asked of it that needs more."""
+    return import_module(module)
 
 
 def open_result(path: str | Path) -> Result:

@@ -41,6 +41,7 @@ __all__ = [
     "Torque",
     "Velocity",
     "Viscosity",
+    "exact",
     "indefinite",
     "metres",
     "quantity",
@@ -162,18 +163,34 @@ def quantity(value: str | float, dimension: str) -> float:
     Raises:
         TorsadeError: not a number, not finite, an unknown unit, or a unit of another dimension.
     """
+    result = _to_float(_read(value, dimension))
+    if not math.isfinite(result):
+        raise QuantityError(f"{quoted(value)} is not a finite number; {_advice(DIMENSIONS[dimension])}")
+    return result
+
+
+def exact(value: str | float, dimension: str) -> Fraction:
+    """The fraction of SI units that `quantity` rounds; a float stands for its shortest decimal form.
+
+    Values between two quantities, worked out in fractions, are the floats that they are when written out.
+
+    Raises:
+        TorsadeError: as `quantity`.
+    """
+    rounded = quantity(value, dimension)
+    return Fraction(_read(value, dimension) if isinstance(value, str) else repr(rounded))
+
+
+def _read(value: str | float, dimension: str) -> Fraction | float:
+    """The value in SI units, as exactly as it is known; any that is not finite is a float."""
     if dimension not in DIMENSIONS:
         raise TorsadeError(f"there is no dimension {dimension!r}; choose one of {', '.join(DIMENSIONS)}")
     wanted = DIMENSIONS[dimension]
     if isinstance(value, str):
-        result = _from_text(value, wanted)
-    elif isinstance(value, Real) and not isinstance(value, bool):
-        result = _to_float(value)
-    else:
-        raise QuantityError(f"{quoted(value)} is not a number; {_advice(wanted)}")
-    if not math.isfinite(result):
-        raise QuantityError(f"{quoted(value)} is not a finite number; {_advice(wanted)}")
-    return result
+        return _from_text(value, wanted)
+    if isinstance(value, Real) and not isinstance(value, bool):
+        return value
+    raise QuantityError(f"{quoted(value)} is not a number; {_advice(wanted)}")
 
 
 def metres(name: str, value: float | str) -> float:
@@ -186,14 +203,14 @@ def metres(name: str, value: float | str) -> float:
         raise QuantityError(f"{name} {error}") from None
 
 
-def _to_float(number: Real | Fraction) -> float:
+def _to_float(number: Real | Fraction | float) -> float:
     try:
         return float(number)
     except OverflowError:
         return math.inf
 
 
-def _from_text(text: str, wanted: Dimension) -> float:
+def _from_text(text: str, wanted: Dimension) -> Fraction | float:
     """Read "number unit"; a number alone is SI."""
     plain = _SUPERSCRIPT.sub(lambda m: "^" + m[0].translate(_PLAIN_DIGITS), text.strip().replace("−", "-"))
     number = _NUMBER.match(plain) if len(plain) <= _LONGEST_TEXT else None
@@ -205,10 +222,10 @@ def _from_text(text: str, wanted: Dimension) -> float:
     if math.isinf(rounded):
         return rounded
     # The exact fraction of "1e-999999999" would fill the memory; the float is 0 and costs nothing.
-    exact = Fraction(number[0]) if rounded else Fraction(0)
+    written = Fraction(number[0]) if rounded else Fraction(0)
     unit = plain[number.end() :].strip()
     if not unit:
-        return rounded
+        return written
     try:
         measure = _read_unit(unit)
     except ValueError as reason:
@@ -218,7 +235,7 @@ def _from_text(text: str, wanted: Dimension) -> float:
         raise QuantityError(
             f"{quoted(text)} is {indefinite(given)}, not {indefinite(wanted.name)}; {_advice(wanted)}"
         )
-    return _to_float(exact * measure.factor)
+    return written * measure.factor
 
 
 def _read_unit(text: str) -> _Measure:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-__all__ = ["BYTES_PER_NODE", "SAMPLE", "SINGLE_PRECISION", "VARIABLES"]
+__all__ = ["BYTES_PER_NODE", "FORMAT", "SAMPLE", "SINGLE_PRECISION", "VARIABLES"]
+
+FORMAT = 1
+"""Of results, counted up whenever a reader of an earlier one would misunderstand it."""
 
 _CHARGE = "charge"
 """Dimension of what is recorded before t = 0, when a battery is charged."""
@@ -18,13 +21,13 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "compression": (("time",), "N", "sum over all edges of the contact forces on them"),
     "end_to_end": (("time",), "m", "distance of the two ends"),
     "length": (("time",), "m", "present length of the fiber"),
-    "h_kappa_max": (("time",), "", "largest curvature, times the radius"),
+    "h_kappa_max": (("time",), "1", "largest curvature, times the radius"),
     "total_twist": (("time",), "rad", "twist of the fiber"),
-    "max_log_strain": (("time",), "", "largest log(1 + sqrt(eps:eps))"),
+    "max_log_strain": (("time",), "1", "largest log(1 + sqrt(eps:eps))"),
     "twist": (("time", "fiber"), "rad", "twist of each fiber"),
     "curvature": (("time", "node"), "1/m", "curvature of the centerline"),
     "displacement": (("time",), "m", "how far moved ends have gone"),
-    "crossings": (("time",), "", "crossings seen along z"),
+    "crossings": (("time",), "1", "crossings seen along z"),
     "energy_stretch": (("time",), "J", "stretch energy"),
     "energy_bend": (("time",), "J", "bending energy"),
     "energy_twist": (("time",), "J", "twist energy"),
@@ -32,14 +35,14 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "external_work": (("time",), "J", "work done on the fibers since the start"),
     "dissipation": (("time",), "J", "energy lost to drag since the start"),
     "position": (("time", "node", "space"), "m", "node positions"),
-    "log_strain": (("time", "node"), "", "log(1 + sqrt(eps:eps)) on the surface"),
+    "log_strain": (("time", "node"), "1", "log(1 + sqrt(eps:eps)) on the surface"),
     "velocity": (("time", "node", "space"), "m/s", "node velocities; zero at the start"),
     "self_torque": (("time", "edge"), "N", "torque by collision drag per rest length, without own spin"),
     "rotation_rate": (("time",), "rad/s", "rate at which the knot turns about the pull"),
     "rotation": (("time",), "rad", "by how much the knot has turned about the pull"),
-    "strain_stretch": (("time", "node"), "", "stretch |x'| - 1"),
-    "strain_bend": (("time", "node"), "", "strain of bending on the surface, h kappa"),
-    "strain_twist": (("time", "node"), "", "strain of twist on the surface, h |theta'|/sqrt(2)"),
+    "strain_stretch": (("time", "node"), "1", "stretch |x'| - 1"),
+    "strain_bend": (("time", "node"), "1", "strain of bending on the surface, h kappa"),
+    "strain_twist": (("time", "node"), "1", "strain of twist on the surface, h |theta'|/sqrt(2)"),
     "end_distance": (("time",), "m", "distance of the two ends of the rod"),
     "kappa_max": (("time",), "1/m", "largest curvature"),
     "energy_kinetic": (("time",), "J", "kinetic energy of the centerline"),
@@ -47,20 +50,20 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "energy_released": (("time",), "J", "energy lost in breaks since the start"),
     "piece_start": (
         ("time", "piece_bound"),
-        "",
+        "1",
         "first node of every piece; empty where pieces are not there",
     ),
     "twist_density": (("time", "node"), "rad/m", "twist density, 0 at ends"),
     "stress": (("time", "node"), "Pa", "stress by the criterion chosen, 0 at ends"),
     "angle": (("time",), "rad", "angle that the lower end has turned"),
     "sample_angle": (("sample",), "rad", "angle at the times of samples"),
-    "writhe": (("time",), "", "writhe of the centerline, in turns"),
-    "average_crossings": (("time",), "", "crossings in the mean over all directions of view"),
-    "fewest_crossings": (("time",), "", "crossings seen from where they are fewest"),
+    "writhe": (("time",), "1", "writhe of the centerline, in turns"),
+    "average_crossings": (("time",), "1", "crossings in the mean over all directions of view"),
+    "fewest_crossings": (("time",), "1", "crossings seen from where they are fewest"),
     "energy_density": (("time", "node"), "J/m", "stretch, bending and twist energy per rest length"),
     "sample_energy": (("sample",), "J", "stored energy at the times of samples"),
     "sample_dissipation": (("sample",), "J", "energy lost to drag until the times of samples"),
-    "sample_fewest_crossings": (("sample",), "", "fewest crossings at the times of samples"),
+    "sample_fewest_crossings": (("sample",), "1", "fewest crossings at the times of samples"),
     **{
         f"charge_{name}": ((_CHARGE, *more), unit, f"{meaning}, while the fiber was closed")
         for name, more, unit, meaning in (
@@ -69,15 +72,17 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
             ("energy_bend", (), "J", "bending energy"),
             ("energy_twist", (), "J", "twist energy"),
             ("energy_contact", (), "J", "contact energy"),
-            ("twist", (), "", "twist, in turns"),
-            ("writhe", (), "", "writhe, in turns"),
-            ("link", (), "", "twist and writhe together, in turns"),
+            ("twist", (), "1", "twist, in turns"),
+            ("writhe", (), "1", "writhe, in turns"),
+            ("link", (), "1", "twist and writhe together, in turns"),
             ("position", ("closed_node", "space"), "m", "node positions"),
             ("energy_density", ("closed_node",), "J/m", "stretch, bending and twist energy per rest length"),
         )
     },
+    "node_start": (("fiber_bound",), "1", "first node of every fiber, and the number of nodes"),
+    "closed": (("fiber",), "1", "whether a fiber is closed"),
 }
-"""Dimensions, SI unit and meaning of every recorded variable."""
+"""Dimensions, SI unit (1 where there is none) and meaning of every recorded variable."""
 
 STRAINED = (
     "position",

@@ -6,16 +6,20 @@ import json
 import os
 import shutil
 import signal
+import subprocess
+import sys
+import time
 
 import numpy as np
 import pytest
 
+from torsade import store
 from torsade.errors import TorsadeError
 from torsade.figures.base import Table
 from torsade.figures.runs import results, run_path
-from torsade.figures.stored import opened, whole
-from torsade.places import Lock
+from torsade.places import Lock, attributes
 from torsade.protocols import PrisonEscape
+from torsade.protocols.stored import opened, whole
 
 
 def short(knot, **fields):
@@ -127,7 +131,7 @@ def test_a_damaged_run_is_run_anew(tmp_path, stored_reef, spoil):
 
     found = results({"reef": short("reef")}, tmp_path, workers=1)["reef"]
     assert found.dataset.attrs["created"] != reef.dataset.attrs["created"]
-    assert found.dataset.attrs["chunks"] == reef.dataset.attrs["chunks"]
+    assert store.chunk_files(path) == store.chunk_files(run_path("reef", short("reef"), folder))
     for name, values in reef.dataset.variables.items():
         assert np.array_equal(values, found.dataset[name], equal_nan=values.dtype.kind == "f"), name
 
@@ -225,6 +229,35 @@ def test_ctrl_c_says_how_many_runs_are_stored(tmp_path, stored_reef):
     said = f"interrupted; 1 of 2 runs is stored in {str(tmp_path)!r}; the same command goes on"
     assert str(stopped.value) == said
     assert len(list(tmp_path.iterdir())) == 1  # neither a lock nor anything begun
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name == "nt", reason="SIGTERM is sent otherwise there")
+def test_sigterm_to_the_command_alone_stops_its_workers_too(tmp_path):
+    """Each saves what it has; neither a lock stays nor is a further run begun."""
+    command = ["figure", "4-5", "--preset", "standard", "--workers", "2", "--out", str(tmp_path)]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "torsade", *command],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        for _ in range(3000):
+            parts = list(tmp_path.glob("runs/*.part"))
+            if parts and any((attributes(part) or {}).get("done", 0) > 2 for part in parts):
+                break
+            time.sleep(0.1)
+        process.send_signal(signal.SIGTERM)
+        _, said = process.communicate(timeout=120)
+    finally:
+        process.kill()
+    assert process.returncode == 143
+    assert "of 27 runs" in said
+    assert "Traceback" not in said
+    left = sorted((tmp_path / "runs").iterdir())
+    assert not [path for path in left if path.suffix in (".lock", ".new")]
+    assert {attributes(path)["status"] for path in left} <= {"complete", "interrupted"}
 
 
 def test_tables_leave_out_what_is_not_known(tmp_path):

@@ -205,13 +205,29 @@ def test_a_moved_centerline_is_the_same_run(tmp_path: Path) -> None:
     assert json.loads(ts.open(out).dataset.attrs["spec"])["frames"] == 8
 
 
-@pytest.mark.parametrize("name", ["torsade", "numba", "numpy"])
+@pytest.mark.parametrize("name", ["torsade", "numba", "llvmlite", "numpy", "scipy"])
 def test_versions_are_not_mixed(part: Path, name: str) -> None:
     versions = places.attributes(part)["versions"]  # type: ignore[index]
     store.set_attributes(part, {"versions": versions | {name: "0.0.7"}})
     with pytest.raises(
         ts.TorsadeError, match=f"begun with {name} 0.0.7, and this is {name} {versions[name]}"
     ):
+        SPEC.run(out=part.with_suffix(""), resume=True)
+
+
+def test_kernels_are_not_mixed(part: Path) -> None:
+    """Neither of sources that were changed without a new version, nor unknown ones of an earlier one."""
+    now = places.attributes(part)["kernels"]  # type: ignore[index]
+    for kernels in ("0123456789abcdef", None):
+        store.set_attributes(part, {"kernels": kernels or "unknown"})
+        with pytest.raises(
+            ts.TorsadeError,
+            match=rf"begun with other kernels \(sources {kernels or 'unknown'}, and here {now}\)",
+        ):
+            SPEC.run(out=part.with_suffix(""), resume=True)
+    versions = places.attributes(part)["versions"]  # type: ignore[index]
+    store.set_attributes(part, {"versions": {k: v for k, v in versions.items() if k != "scipy"}})
+    with pytest.raises(ts.TorsadeError, match="begun with an unknown version of scipy, and this is scipy"):
         SPEC.run(out=part.with_suffix(""), resume=True)
 
 

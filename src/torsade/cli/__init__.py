@@ -8,16 +8,18 @@ from collections.abc import Sequence
 
 from torsade.cli.messages import say
 from torsade.errors import TorsadeError, reason_of
+from torsade.stopping import exit_code, sigterm_stops
 
 __all__ = ["main"]
 
 BAD_INPUT = 2
-INTERRUPTED = 130
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit."""
-    sys.exit(_status(sys.argv[1:] if arguments is None else list(arguments)))
+    with sigterm_stops():
+        code = _status(sys.argv[1:] if arguments is None else list(arguments))
+    sys.exit(code)
 
 
 def _status(arguments: list[str]) -> int:
@@ -41,7 +43,7 @@ def _status(arguments: list[str]) -> int:
         return BAD_INPUT
     except KeyboardInterrupt as error:
         say(str(error) or "interrupted before the first frame; nothing is saved")
-        return INTERRUPTED
+        return exit_code()
     except BrokenPipeError:
         # Whoever read the output has had enough, as in `torsade run ... | head`.
         _silence()

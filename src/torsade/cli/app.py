@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from cyclopts import App, Group, Parameter
 
 from torsade import __version__
-from torsade.cli.fracture_app import add_commands
+from torsade.cli import fracture_app, results_app, sweep_app
 from torsade.cli.knots_app import knots_app
 from torsade.cli.movie_app import add_command as add_movie
 from torsade.errors import TorsadeError
@@ -110,7 +110,9 @@ def build(arguments: list[str]) -> App:
     app.command(_convert, name="convert", help_epilogue=CONVERT_EXAMPLES, version_flags=[])
     app.command(knots_app())
     app.command(_tight, name="tight", help_epilogue=TIGHT_EXAMPLES, version_flags=[])
-    add_commands(app)
+    fracture_app.add_commands(app)
+    results_app.add_commands(app)
+    sweep_app.add_commands(app)
     add_movie(app)
     app.command(_figure, name="figure", help_epilogue=FIGURE_EXAMPLES, version_flags=[])
     run = App(

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 from torsade import places
 from torsade.cli.messages import say
 from torsade.errors import TorsadeError, reason_of
-from torsade.protocols.base import Driven
+from torsade.protocols.base import Driven, Progress
 from torsade.protocols.files import PROTOCOLS, merged, read_fields
 from torsade.protocols.prison_escape import PrisonEscape
 
 if TYPE_CHECKING:
-    from torsade.protocols.base import Progress, Spec
+    from torsade.protocols.base import Spec
     from torsade.results import Result
 
 __all__ = ["check_drawings", "demo", "progress", "run"]
@@ -159,24 +159,26 @@ def _run(spec: Spec, out: str | None, resume: bool, overwrite: bool, quiet: bool
         raise
 
 
+def _notice(share: float, note: str) -> None:
+    """One line when kernels must be compiled."""
+    if note.startswith(("compiling", "stopping")):
+        say(note)
+
+
 @contextmanager
-def progress(quiet: bool) -> Iterator[Progress | None]:
-    """A progress bar on the terminal; off it, one line when kernels must be compiled."""
+def progress(quiet: bool, notice: Progress = _notice, *, estimate: bool = True) -> Iterator[Progress | None]:
+    """A progress bar on the terminal, with an estimate of the time left; off it, what `notice` says."""
     if not sys.stderr.isatty():
-        yield None if quiet else _notice
+        yield None if quiet else notice
         return
     from rich.console import Console
     from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
-    columns = (BarColumn(), TaskProgressColumn(), TimeRemainingColumn(), TextColumn("{task.description}"))
+    left = (TimeRemainingColumn(),) if estimate else ()
+    columns = (BarColumn(), TaskProgressColumn(), *left, TextColumn("{task.description}"))
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("reading", total=1.0)
         yield lambda share, note: bar.update(task, completed=share, description=note)
-
-
-def _notice(share: float, note: str) -> None:
-    if note.startswith(("compiling", "stopping")):
-        say(note)
 
 
 def _draw(
@@ -208,19 +210,9 @@ def _draw(
 
 
 def _picture(result: Result, path: str) -> None:
-    if result.protocol in BREAKING:
-        from torsade.view.cascade import draw_pieces
+    from torsade.view.window import draw_result
 
-        draw_pieces(result.dataset, path)
-        return
-    if result.protocol == "battery":
-        from torsade.view.battery import draw_battery
-
-        draw_battery(result.dataset, path)
-        return
-    from torsade.view.scene import render_result
-
-    render_result(result.dataset, path, frame=result.last_held)
+    draw_result(result, path)
 
 
 def _movie(result: Result, path: str, quiet: bool) -> None:

@@ -33,6 +33,10 @@ class _Command(NamedTuple):
 
 _QUOTE = "{} comes after what the command is about; quote names and codes that have spaces"
 
+_RESULT = "{} comes after the result; give one folder at a time, and every value after its option"
+_NO_RESULT = "no result is given; give a folder that a run wrote, such as reef.zarr"
+_NO_EXPORT = "export needs a result and what to export to, such as torsade export reef.zarr --to vtk"
+
 COMMANDS = MappingProxyType(
     {
         "topology": _Command(
@@ -90,6 +94,21 @@ COMMANDS = MappingProxyType(
             "",
             "{} comes after the number; make one figure at a time, such as torsade figure 4-5",
         ),
+        "sweep": _Command(
+            ("--out", "--workers", "--scheduler", "--at-most"),
+            ("--retry-failed", "--keep", "--dry-run", "--json"),
+            "nothing is given; give a TOML file, such as pieces.toml",
+            "{} comes after the file; give one file, and every value after its option",
+        ),
+        "query": _Command(
+            (),
+            ("--csv", "--json"),
+            "nothing is given; give the folder of a sweep, such as pieces",
+            "{} comes after the query; put the whole query in one pair of quotes",
+        ),
+        "info": _Command((), ("--json",), _NO_RESULT, _RESULT),
+        "export": _Command(("--to", "--frames", "--out"), ("--json", "--overwrite"), _NO_EXPORT, _RESULT),
+        "open": _Command(("--frame", "--picture"), ("--json",), _NO_RESULT, _RESULT),
         "movie": _Command(
             ("--out", "--seconds", "--fps", "--size", "--frames", "--colour"),
             ("--whole", "--json"),

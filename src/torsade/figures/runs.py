@@ -2,30 +2,24 @@
 
 from __future__ import annotations
 
-import hashlib
-import json
 import multiprocessing
 import os
 import re
 import signal
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
-from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from torsade import places
+from torsade import places, stopping
 from torsade.errors import TorsadeError, counted, reason_of
-from torsade.figures import stored
+from torsade.protocols import stored
 from torsade.results import Result
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Progress, Spec
 
 __all__ = ["make_folder", "results", "run_path"]
-
-DRAWING = ("view", "figures", "cli")
-"""Parts of the package that no number depends on."""
 
 BUSY = "another command is making runs in {out} ({owner}); wait for it or give another --out"
 
@@ -131,21 +125,7 @@ def make_folder(folder: Path) -> None:
 
 def run_path(label: str, spec: Spec, folder: Path) -> Path:
     """Where the run of a specification is kept: its label, and a hash of all that decides the result."""
-    asked = json.dumps(spec.stored() | {"h": spec.h}, sort_keys=True)
-    key = hashlib.sha256((asked + _sources()).encode()).hexdigest()[:16]
-    return folder / f"{re.sub(r'[^A-Za-z0-9.]+', '-', label).strip('-')}-{key}.zarr"
-
-
-@lru_cache(maxsize=1)
-def _sources() -> str:
-    """A hash of the sources that results come from: another version of them gives other runs."""
-    package = Path(__file__).parents[1]
-    digest = hashlib.sha256()
-    for path in sorted(package.rglob("*")):
-        parts = path.relative_to(package).parts
-        if path.suffix in (".py", ".json") and parts[0] not in DRAWING:
-            digest.update("/".join(parts).encode() + b"\0" + path.read_bytes())
-    return digest.hexdigest()
+    return folder / f"{re.sub(r'[^A-Za-z0-9.]+', '-', label).strip('-')}-{stored.key(spec)}.zarr"
 
 
 def _note(missing: int) -> str:
@@ -197,18 +177,35 @@ def _outcomes(
         try:
             for future in as_completed(waiting):
                 yield future.result()
+        except KeyboardInterrupt:
+            if stopping.by_sigterm():  # unlike Ctrl-C, it may have come to this process alone
+                for worker in multiprocessing.active_children():
+                    worker.terminate()
+            raise
         finally:
             pool.shutdown(cancel_futures=True)
 
 
 def _wait() -> None:
-    """Leave Ctrl-C to whoever waits for this process, while it has nothing to do."""
+    """Leave Ctrl-C and SIGTERM to whoever waits for this process, while it has nothing to do."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, _leave)
+
+
+def _leave(number: int, frame: object) -> None:
+    """Begin nothing more, and end a process that nobody waits for any more."""
+    stopping.heard(number)
+    waiting = multiprocessing.parent_process()
+    if waiting is None or not waiting.is_alive():
+        os._exit(128 + number)
 
 
 def _run_apart(job: Mapping[str, tuple[Spec, Path]], fresh: bool) -> dict[str, str | None]:
-    """Runs in a process of their own, which Ctrl-C stops."""
+    """Runs in a process of their own, which Ctrl-C and SIGTERM stop."""
+    if stopping.by_sigterm():
+        raise KeyboardInterrupt
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGTERM, stopping.stop)
     try:
         return _run(job, fresh)
     finally:

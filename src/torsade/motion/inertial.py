@@ -27,7 +27,7 @@ from torsade.errors import TorsadeError
 from torsade.material import Material, Section
 from torsade.motion import verlet
 from torsade.motion.ends import Boundary
-from torsade.motion.moving import Outcome
+from torsade.motion.moving import Outcome, check_saved
 
 __all__ = ["Energies", "Inertial", "longest_step"]
 
@@ -228,6 +228,7 @@ class Inertial:
 
     def recover(self, saved: Mapping[str, NDArray[Any]]) -> None:
         """Go on from the arrays that `saved` gave, of the same fibers."""
+        check_saved(saved, self.saved())
         self.state = State(*(saved[name].copy() for name in State._fields))
         self.clock.steps[:] = saved["clock_steps"]
         self.clock.dissipation[:] = saved["clock_dissipation"]

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
-__all__ = ["Motion", "Outcome"]
+__all__ = ["Motion", "Outcome", "check_saved"]
 
 
 class Outcome(Enum):
@@ -49,3 +49,18 @@ class Motion(Protocol):
 
     def recover(self, saved: Mapping[str, NDArray[Any]]) -> None:
         """Go on from the arrays that `saved` gave."""
+
+
+def check_saved(saved: Mapping[str, NDArray[Any]], present: Mapping[str, NDArray[Any]]) -> None:
+    """Refuse saved arrays that cannot take the place of the present ones: kernels would read beyond them.
+
+    Raises
+    ------
+    ValueError
+        When one has another shape or type than the present array of its name.
+    """
+    for name, array in present.items():
+        found = saved[name]
+        same = (found.shape, found.dtype) == (array.shape, array.dtype)
+        if not (same and found.flags.c_contiguous):
+            raise ValueError(f"{name} is {found.dtype} of shape {found.shape}")

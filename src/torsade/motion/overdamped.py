@@ -16,7 +16,7 @@ from torsade.errors import TorsadeError
 from torsade.material import Material, Section
 from torsade.motion import scheme, stepping
 from torsade.motion.ends import Boundary
-from torsade.motion.moving import Outcome
+from torsade.motion.moving import Outcome, check_saved
 from torsade.motion.near import measure
 from torsade.rod.contact import Model
 from torsade.rod.factor import no_factor
@@ -300,5 +300,6 @@ class Motion:
 
     def recover(self, saved: Mapping[str, NDArray[Any]]) -> None:
         """Go on from the arrays that `saved` gave."""
+        check_saved(saved, self.saved())
         state = State(*(saved[name] for name in State._fields))
         self.restore(Checkpoint(state, saved["clock_time"], saved["clock_counts"]))

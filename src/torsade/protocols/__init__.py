@@ -5,6 +5,7 @@ from __future__ import annotations
 from torsade.protocols.base import Spec
 from torsade.protocols.battery import Battery
 from torsade.protocols.bend_twist import BendTwist
+from torsade.protocols.ensemble import ensemble
 from torsade.protocols.files import PROTOCOLS, load_spec
 from torsade.protocols.pendulum import Pendulum
 from torsade.protocols.prison_escape import PrisonEscape
@@ -24,5 +25,6 @@ __all__ = [
     "SnapTwist",
     "Spec",
     "Tighten",
+    "ensemble",
     "load_spec",
 ]

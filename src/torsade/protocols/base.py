@@ -114,12 +114,14 @@ class Spec(BaseModel, ABC):
 
     def attributes(self) -> dict[str, Any]:
         """What every result of this specification says of itself."""
-        return {
+        about = {
             "protocol": self.protocol,
             "spec": json.dumps(self.stored()),
             "radius": self.h,
             "model": json.dumps(self.meaning()),
         }
+        seed = getattr(self, "seed", None)
+        return about if seed is None else about | {"seed": seed}
 
     @abstractmethod
     def run(
@@ -224,7 +226,7 @@ class Driven(Spec):
             When the input is unfit, the output cannot be written, or strands would pass through each
             other; frames recorded until then stay in NAME.zarr.part.
         Interrupted
-            On Ctrl-C, after saving what there is.
+            On Ctrl-C or SIGTERM, after saving what there is.
         """
         from torsade.protocols.driving import drive
 

@@ -45,7 +45,7 @@ def drive(
         tell(0.0, preparation())
         motion.warm_up()
         if recording.saved is not None:
-            motion.recover(recording.saved)
+            recording.recover(motion)
         clock = _Clock(spec.lasting, motion, tell)
         with Patience(clock.stopping) as patience:
             loose_at, over = _record(spec, trial, recording, clock, patience)

@@ -13,7 +13,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from torsade.errors import TorsadeError, reason_of
+from torsade.errors import TorsadeError, quoted, reason_of
 from torsade.protocols.base import Spec
 from torsade.protocols.battery import Battery
 from torsade.protocols.bend_twist import BendTwist
@@ -24,7 +24,7 @@ from torsade.protocols.snap_quench import SnapQuench
 from torsade.protocols.snap_twist import SnapTwist
 from torsade.protocols.tighten import Tighten
 
-__all__ = ["PROTOCOLS", "load_spec", "merged", "read_fields"]
+__all__ = ["PROTOCOLS", "beside", "check_protocol", "load_spec", "merged", "read_fields", "read_toml"]
 
 PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
     {
@@ -68,33 +68,61 @@ def load_spec(path: str | Path) -> Spec:
 
 def read_fields(path: str | Path) -> dict[str, Any]:
     """The fields in a TOML file, `protocol` among them and known, the others as they are."""
-    path, name = Path(path), repr(str(path))
+    fields = read_toml(path)
+    check_protocol(fields.get("protocol"), repr(str(path)))
+    if "centerline" in fields:
+        fields["centerline"] = beside(path, fields["centerline"])
+    return fields
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """What is in a TOML file.
+
+    Raises
+    ------
+    TorsadeError
+        When the file is missing, cannot be read or is not TOML.
+    """
+    name = repr(str(path))
     try:
-        fields = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
     except FileNotFoundError:
         raise TorsadeError(f"there is no file {name}; give the path of a TOML specification") from None
-    except (OSError, ValueError) as error:
-        if isinstance(error, tomllib.TOMLDecodeError):
+    except (OSError, ValueError, RecursionError) as error:
+        if isinstance(error, tomllib.TOMLDecodeError | RecursionError):
             reason = str(error).rstrip(".")
             raise TorsadeError(f'{name} is not TOML: {reason}; write lines such as force = "15 N"') from None
         reason = reason_of(error) if isinstance(error, OSError) else "not text in UTF-8"
         raise TorsadeError(f"cannot read {name} ({reason}); give a TOML specification") from None
-    protocol = fields.get("protocol")
+
+
+def check_protocol(protocol: object, where: str) -> type[Spec]:
+    """The specification of a protocol that is given somewhere.
+
+    Raises
+    ------
+    TorsadeError
+        When none is given, or one that is not known; the nearest is named.
+    """
     if protocol is None:
         raise TorsadeError(
-            f'{name} names no protocol; add a line such as protocol = "prison-escape"; there are '
+            f'{where} names no protocol; add a line such as protocol = "prison-escape"; there are '
             f"{', '.join(PROTOCOLS)}"
         )
     if not isinstance(protocol, str) or protocol not in PROTOCOLS:
         near = difflib.get_close_matches(str(protocol), PROTOCOLS, n=1)
         hint = f"did you mean {near[0]!r}? " if near else ""
         raise TorsadeError(
-            f"{name} has protocol {protocol!r}, which is unknown; {hint}choose one of {', '.join(PROTOCOLS)}"
+            f"{where} has protocol {quoted(protocol)}, which is unknown; {hint}choose one of "
+            f"{', '.join(PROTOCOLS)}"
         )
-    centerline = fields.get("centerline")
-    if isinstance(centerline, str) and (path.parent / centerline).is_file():
-        fields["centerline"] = str(path.parent / centerline)
-    return fields
+    return PROTOCOLS[protocol]
+
+
+def beside(path: str | Path, centerline: Any) -> Any:
+    """A file of nodes that a TOML file names: beside that, where it lies there."""
+    found = isinstance(centerline, str) and (Path(path).parent / centerline).is_file()
+    return str(Path(path).parent / centerline) if found else centerline
 
 
 def merged(fields: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Ctrl-C during a run: heard at once, obeyed between two steps."""
+"""Ctrl-C and SIGTERM during a run: heard at once, obeyed between two steps."""
 
 from __future__ import annotations
 
@@ -6,49 +6,51 @@ import signal
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
+from torsade import stopping
 from torsade.errors import counted
 
 __all__ = ["Interrupted", "Patience"]
 
 
 class Patience:
-    """While it lasts, Ctrl-C waits for the next call of `end`, so that no step or write is cut in half.
+    """While it lasts, Ctrl-C and SIGTERM wait for the next call of `end`: no step or write is cut in half.
 
-    `told` is called at the first Ctrl-C; a second one does not wait. Another handler than Python's own is
-    left in place.
+    `told` is called at the first of them; a second one does not wait. Handlers of others are left in place.
     """
 
     def __init__(self, told: Callable[[], None]) -> None:
         self._told = told
         self._asked = False
-        self._installed = False
+        self._before: dict[int, Any] = {}
 
     def __enter__(self) -> Patience:
-        ours = threading.current_thread() is threading.main_thread()
-        if ours and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-            signal.signal(signal.SIGINT, self._note)
-            self._installed = True
+        if threading.current_thread() is threading.main_thread():
+            for number in (signal.SIGINT, signal.SIGTERM):
+                if stopping.ours(number):
+                    self._before[number] = signal.signal(number, self._note)
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._installed:
-            signal.signal(signal.SIGINT, signal.default_int_handler)
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
 
-    def _note(self, *_: object) -> None:
+    def _note(self, number: int, frame: object) -> None:
+        stopping.heard(number)
         if self._asked:
             raise KeyboardInterrupt
         self._asked = True
         self._told()
 
     def end(self) -> None:
-        """Raise KeyboardInterrupt if Ctrl-C was pressed."""
+        """Raise KeyboardInterrupt if a signal has come."""
         if self._asked:
             raise KeyboardInterrupt
 
 
 class Interrupted(KeyboardInterrupt):
-    """Ctrl-C during a run, after what there is was saved.
+    """Ctrl-C or SIGTERM during a run, after what there is was saved.
 
     Attributes: `time` of the last frame [s], `frames` recorded, `part`, the folder that holds them, or None.
     """

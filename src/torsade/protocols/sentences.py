@@ -14,7 +14,7 @@ from torsade.units import Dimension, indefinite
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
 
-__all__ = ["dimension_of", "sentence"]
+__all__ = ["dimension_of", "sentence", "sentence_of_unknown"]
 
 PROPER = ("Reidemeister",)
 """Words that stay capitals within a sentence."""
@@ -41,7 +41,7 @@ def sentence(spec: type[Spec], error: ValidationError) -> str:
     if isinstance(reason, TorsadeError):
         return f"{name} {reason}" if name and isinstance(reason, QuantityError) else str(reason)
     if kind == "extra_forbidden":
-        return _unknown_field(spec, name)
+        return sentence_of_unknown(spec, name)
     if kind == "missing":
         wanted = (spec.model_fields[name].description or "").rstrip(".")
         begin = wanted[:1] if wanted.startswith(PROPER) else wanted[:1].lower()
@@ -67,7 +67,8 @@ def sentence(spec: type[Spec], error: ValidationError) -> str:
     return f"{name} is {given}; {_expected(spec, name)}"
 
 
-def _unknown_field(spec: type[Spec], name: str) -> str:
+def sentence_of_unknown(spec: type[Spec], name: str) -> str:
+    """That a protocol has no such field, and what may be meant."""
     if name in spec.hints:
         return spec.hints[name]
     known = [k for k in spec.model_fields if k != "protocol"]

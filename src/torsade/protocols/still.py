@@ -56,6 +56,8 @@ class Still(Spec):
     ) -> Result:
         """Find the equilibrium.
 
+        It is found at once or not at all: when it is interrupted nothing is saved, and `resume` begins anew.
+
         Parameters
         ----------
         progress : called when there is something to wait for
@@ -67,14 +69,22 @@ class Still(Spec):
         ------
         TorsadeError
             When there is no such equilibrium, or the output cannot be written.
+        Interrupted
+            On Ctrl-C or SIGTERM.
         """
-        from torsade.protocols.driving import preparation
+        from torsade import places
+        from torsade.protocols.driving import Interrupted, preparation
         from torsade.recording import Recording
 
-        if progress is not None:
-            progress(0.0, preparation())
+        if out is not None and not resume:
+            places.check_target(out, overwrite)  # before there is something to be lost
         began = time.perf_counter()
-        found = self.solve()
+        try:
+            if progress is not None:
+                progress(0.0, preparation())
+            found = self.solve()
+        except KeyboardInterrupt:
+            raise Interrupted(0.0, 0, None) from None
         a = found.assembly
         recording = Recording.begin(
             {"time": 1, "sample": 0, "fiber": len(a.closed), "node": len(a.node_length)},

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from torsade.view.film import movie
     from torsade.view.plots import plot_move, plot_separation, plot_swing, plot_tightening
     from torsade.view.scene import render, render_result
+    from torsade.view.strands import strands_at
+    from torsade.view.window import show
 
 __all__ = [
     "along_rod",
@@ -31,6 +33,8 @@ __all__ = [
     "plot_tightening",
     "render",
     "render_result",
+    "show",
+    "strands_at",
 ]
 
 _HOMES = {
@@ -47,6 +51,8 @@ _HOMES = {
     "plot_tightening": "torsade.view.plots",
     "render": "torsade.view.scene",
     "render_result": "torsade.view.scene",
+    "show": "torsade.view.window",
+    "strands_at": "torsade.view.strands",
 }
 
 

@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from torsade.errors import TorsadeError
 from torsade.fracture.criteria import matching_strength
 from torsade.view._extra import require
-from torsade.view.colours import STRAND_COLOURS
+from torsade.view.colours import DISTINCT, STRAND_COLOURS
 from torsade.view.plots import INK, SLIP, STYLE, save
+from torsade.view.strands import strands_at
 
 if TYPE_CHECKING:
     import xarray
@@ -30,18 +31,14 @@ BEFORE = 0.15
 MOMENTS = 4
 """Moments that a picture shows."""
 
-DISTINCT = 5
-"""Colours after which pieces begin anew: the others are too pale."""
-
 THICKER = 3.0
 """How much thicker than to scale the rod is drawn, as in the thesis."""
 
 
 def pieces_at(dataset: xarray.Dataset, frame: int) -> list[Floats]:
     """Nodes (n, 3) [m] of every piece at a recorded frame, from end 0 of the rod to end 1."""
-    start = np.unique(np.asarray(dataset["piece_start"].isel(time=frame), dtype=np.int64))
-    position = np.asarray(dataset["position"].isel(time=frame), dtype=np.float64)
-    return np.split(position[: start[-1]], start[1:-1])
+    _require(dataset, "position")
+    return [piece.x for piece in strands_at(dataset, frame)]
 
 
 def along_rod(dataset: xarray.Dataset, name: str) -> tuple[Floats, Floats]:
@@ -111,32 +108,44 @@ def plot_cascade(dataset: xarray.Dataset, path: str | Path) -> Path:
         return save(figure, path)
 
 
-def draw_pieces(dataset: xarray.Dataset, path: str | Path) -> Path:
+def draw_pieces(dataset: xarray.Dataset, path: str | Path, frame: int | None = None) -> Path:
     """Draw the rod from the first break to the end, one moment above the other, seen across its plane.
 
     Parameters
     ----------
     dataset : of snap-twist or snap-quench
     path : the PNG file to write
+    frame : draw this frame alone
     """
     _require(dataset, "position")
     time = np.asarray(dataset["time"], float)
-    times = dataset.attrs["break_times_s"]
+    times = dataset.attrs.get("break_times_s", [])  # a run that was interrupted has none
     begin = float(times[0]) if len(times) else float(time[0])
-    wanted = np.linspace(begin, float(time[-1]), MOMENTS)
-    frames = [int(np.searchsorted(time, t * (1 - 1e-9)).clip(max=len(time) - 1)) for t in wanted]
-    shapes = [[1e3 * x for x in pieces_at(dataset, frame)] for frame in frames]
+    if frame is None:
+        wanted = np.linspace(begin, float(time[-1]), MOMENTS)
+        frames = [int(np.searchsorted(time, t * (1 - 1e-9)).clip(max=len(time) - 1)) for t in wanted]
+    else:
+        frames = [frame]
+    shapes = [[1e3 * x for x in pieces_at(dataset, k)] for k in frames]
+    notes = [f"{1e3 * (time[k] - begin):.2f} ms" for k in frames]
+    return _draw_moments(shapes, notes, 2e3 * float(dataset.attrs["radius"]) * THICKER, path)
+
+
+def _draw_moments(shapes: list[list[Floats]], notes: list[str], thick: float, path: str | Path) -> Path:
+    """Draw pieces [mm] of some moments, of this thickness [mm], two beside each other, each with its note."""
     seen = np.concatenate([x for pieces in shapes for x in pieces])
     low, high = seen.min(axis=0), seen.max(axis=0)
     margin = 0.04 * (high[0] - low[0])
     wide, tall = high[0] - low[0] + 2 * margin, max(high[1] - low[1], 0.1 * (high[0] - low[0])) + 2 * margin
-    inches = 3.2
-    width = 72 * inches / wide * 2e3 * float(dataset.attrs["radius"]) * THICKER  # points
+    columns = min(2, len(shapes))
+    rows, inches = -(-len(shapes) // columns), 6.4 / columns
+    width = 72 * inches / wide * thick  # points
     with require("matplotlib").rc_context(STYLE):
-        rows = MOMENTS // 2
-        figure = require("matplotlib.figure").Figure(figsize=(2 * inches, rows * inches * tall / wide))
-        for k, (frame, pieces) in enumerate(zip(frames, shapes, strict=True)):
-            axis = figure.add_axes((k % 2 / 2, 1 - (k // 2 + 1) / rows, 0.5, 1 / rows))
+        figure = require("matplotlib.figure").Figure(figsize=(6.4, rows * inches * tall / wide))
+        for k, (note, pieces) in enumerate(zip(notes, shapes, strict=True)):
+            axis = figure.add_axes(
+                (k % columns / columns, 1 - (k // columns + 1) / rows, 1 / columns, 1 / rows)
+            )
             axis.set(
                 xlim=(low[0] - margin, high[0] + margin), ylim=(high[1] + margin - tall, high[1] + margin)
             )
@@ -144,7 +153,6 @@ def draw_pieces(dataset: xarray.Dataset, path: str | Path) -> Path:
             for p, x in enumerate(pieces):
                 colour = STRAND_COLOURS[p % DISTINCT]
                 axis.plot(x[:, 0], x[:, 1], color=colour, linewidth=width, solid_capstyle="butt")
-            note = f"{1e3 * (time[frame] - begin):.2f} ms"
             axis.text(0.5, 0.08, note, transform=axis.transAxes, color=INK, ha="center")
         return save(figure, path)
 

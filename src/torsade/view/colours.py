@@ -53,6 +53,9 @@ STRAND_COLOURS: tuple[str, ...] = (
 )
 """sRGB colours for telling strands apart, also by the colour-blind, and one from the next in grey."""
 
+DISTINCT = 5
+"""Colours after which the pieces of a rod begin anew: the others are too pale."""
+
 
 def strain_colour(log_strain: ArrayLike) -> NDArray[np.float64]:
     """Measured colour of a photonic fiber at the given strain.
@@ -78,6 +81,12 @@ PRIMARIES = ((0.64, 0.33), (0.30, 0.60), (0.15, 0.06))
 """Chromaticities x, y of red, green and blue of sRGB, the corners of what it can show."""
 
 
+def linear_rgb(rgb: ArrayLike) -> NDArray[np.float64]:
+    """Linear light (..., 3) of sRGB colours (..., 3), each channel 0..1 (IEC 61966-2-1)."""
+    c = np.asarray(rgb, dtype=np.float64)
+    return np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
+
+
 def chromaticity(rgb: ArrayLike) -> NDArray[np.float64]:
     """CIE 1931 chromaticities x = X/(X + Y + Z), y = Y/(X + Y + Z) of sRGB colours.
 
@@ -89,9 +98,7 @@ def chromaticity(rgb: ArrayLike) -> NDArray[np.float64]:
     -------
     (..., 2) x and y
     """
-    c = np.asarray(rgb, dtype=np.float64)
-    linear = np.where(c <= 0.04045, c / 12.92, ((c + 0.055) / 1.055) ** 2.4)
-    xyz = linear @ SRGB_TO_XYZ.T
+    xyz = linear_rgb(rgb) @ SRGB_TO_XYZ.T
     return np.asarray(xyz[..., :2] / xyz.sum(axis=-1, keepdims=True))
 
 

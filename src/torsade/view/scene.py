@@ -24,6 +24,7 @@ from torsade.view.colours import strain_colour, strand_colour
 from torsade.view.overlay import Mark, draw_over
 from torsade.view.shading import LAMP, Pieces, lit, occlusion
 from torsade.view.stage import Stage, averaged
+from torsade.view.strands import strands_at
 from torsade.view.tube import Mesh, SmoothCurve, smooth_centerline, tube
 
 if TYPE_CHECKING:
@@ -96,22 +97,19 @@ def render(
 def render_result(dataset: xarray.Dataset, path: str | Path, frame: int = -1, **options: Any) -> Path:
     """Write a picture of one stored frame of a result, coloured by strain; options as in `render`.
 
-    The dataset holds `position (time, node, space)` [m], `node_start (fiber_bound)`, `closed (fiber)`, the
-    attribute `radius` [m], and, for the colours, `log_strain (time, node)`.
+    The dataset holds what `strands_at` draws, the attribute `radius` [m], and, for the colours,
+    `log_strain (time, node)`.
     """
-    missing = [name for name in ("position", "node_start", "closed") if name not in dataset]
-    if missing or "radius" not in dataset.attrs:
-        wanted = ", ".join(missing or ["the attribute radius"])
-        raise TorsadeError(f"this result cannot be drawn: it lacks {wanted}; give one written by a protocol.")
-    frames = dataset.sizes["time"]
-    if not -frames <= frame < frames:
-        raise TorsadeError(f"frame {frame} was asked for; the result has {frames}, numbered from 0.")
-    cuts = np.asarray(dataset["node_start"], dtype=np.int64)[1:-1]
-    strands = np.split(np.asarray(dataset["position"].isel(time=frame), dtype=np.float64), cuts)
+    strands = strands_at(dataset, frame)
+    if "radius" not in dataset.attrs:
+        raise TorsadeError(
+            "this result cannot be drawn: it lacks the attribute radius; give one of a protocol."
+        )
     if "log_strain" in dataset and "values" not in options:
-        options["values"] = np.split(np.asarray(dataset["log_strain"].isel(time=frame), float), cuts)
-    closed = [bool(c) for c in np.asarray(dataset["closed"])]
-    return render(strands, closed, float(dataset.attrs["radius"]), path, **options)
+        strain = np.asarray(dataset["log_strain"].isel(time=frame))
+        options["values"] = [strand.of(strain) for strand in strands]
+    closed = [strand.closed for strand in strands]
+    return render([s.x for s in strands], closed, float(dataset.attrs["radius"]), path, **options)
 
 
 def picture(

@@ -1,17 +1,59 @@
-"""Stored runs: whether one is whole and can be used, partial and can be gone on with, or not a run at all."""
+"""Stored runs: by what key they are known, and whether one is whole, can be gone on with, or is no run."""
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
+from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from torsade import places, recording, store
+from torsade import places, provenance, store
 from torsade.errors import TorsadeError
 from torsade.results import Result
 
-__all__ = ["check_ours", "goes_on", "is_there", "opened", "whole"]
+if TYPE_CHECKING:
+    from torsade.protocols.base import Spec
+
+__all__ = ["check_ours", "goes_on", "is_there", "key", "opened", "sources", "whole"]
+
+NO_NUMBERS = ("view", "figures", "export", "sweep", "cli")
+"""Parts of the package that no number depends on."""
+
+
+def key(spec: Spec) -> str:
+    """A hash of all that decides the result of a specification, 16 hexadecimal digits.
+
+    It covers the fields in SI units, what is in a file of nodes (its name where it cannot be read, as the run
+    will say), and the sources of the package.
+    """
+    asked = spec.stored() | {"h": spec.h}
+    if "centerline" in asked:
+        asked["centerline"] = _content(asked["centerline"])
+    return hashlib.sha256((json.dumps(asked, sort_keys=True) + sources()).encode()).hexdigest()[:16]
+
+
+def _content(path: str) -> str:
+    """A hash of what is in a file."""
+    try:
+        return hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    except OSError:
+        return path
+
+
+@lru_cache(maxsize=1)
+def sources() -> str:
+    """A hash of the sources that results come from: another version of them gives other runs."""
+    package = Path(__file__).parents[1]
+    digest = hashlib.sha256()
+    for path in sorted(package.rglob("*")):
+        parts = path.relative_to(package).parts
+        if path.suffix in (".py", ".json") and parts[0] not in NO_NUMBERS:
+            digest.update("/".join(parts).encode() + b"\0" + path.read_bytes())
+    return digest.hexdigest()
 
 
 def check_ours(path: Path) -> None:
@@ -51,8 +93,8 @@ def goes_on(part: Path) -> bool:
         if found["status"] != "complete" and store.has_restart(part):
             store.check_restart(part)
         _read(part)
-        now = recording.versions()
-        return all(found["versions"][name] == now[name] for name in recording.SAME_VERSIONS)
+        provenance.check_same(found, part)
+        return True
     except Exception:
         return False
 

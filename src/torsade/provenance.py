@@ -1,0 +1,99 @@
+"""Where numbers come from: versions, compiled kernels and the machine, as results note them."""
+
+from __future__ import annotations
+
+import os
+import platform
+import subprocess
+import sys
+from collections.abc import Mapping
+from contextlib import suppress
+from functools import lru_cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from torsade import __version__, _compile
+from torsade.errors import TorsadeError
+
+__all__ = ["SAME_VERSIONS", "check_same", "machine", "present", "versions"]
+
+LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "zarr")
+
+SAME_VERSIONS = ("torsade", "numba", "llvmlite", "numpy", "scipy")
+"""A run goes on with these in the versions that it was begun with: others may round otherwise."""
+
+
+def present() -> dict[str, Any]:
+    """What decides numbers here and now: `versions`, `kernels` (a hash of their sources), `machine`."""
+    return {"versions": versions(), "kernels": _compile.source_hash(), "machine": machine()}
+
+
+def versions() -> dict[str, str]:
+    """Of what results are computed and stored with."""
+    packages = {name: version(name) for name in LIBRARIES}
+    return {"torsade": __version__, "python": platform.python_version()} | packages
+
+
+@lru_cache(maxsize=1)
+def _facts() -> dict[str, Any]:
+    from llvmlite import binding
+
+    return {
+        "architecture": platform.machine(),
+        "processor": _processor(),
+        "compiled_for": binding.get_host_cpu_name(),
+        "system": platform.system(),
+        "libc": " ".join(part for part in platform.libc_ver() if part),
+        "cores": os.cpu_count() or 1,
+    }
+
+
+def machine() -> dict[str, Any]:
+    """What of this machine may decide how numbers round and how long they take; no names of it or of users.
+
+    `processor` is what it is called, `compiled_for` what the compiler takes it for, `libc` where sines and
+    logarithms come from.
+    """
+    return dict(_facts())
+
+
+def _processor() -> str:
+    """The model of the processor as the system names it; its architecture where it does not."""
+    with suppress(OSError, ValueError, subprocess.SubprocessError):
+        if sys.platform == "darwin":
+            asked = ["sysctl", "-n", "machdep.cpu.brand_string"]
+            return subprocess.run(asked, capture_output=True, text=True, check=True, timeout=5).stdout.strip()
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            name, _, value = line.partition(":")
+            if name.strip() in ("model name", "Model"):
+                return value.strip()
+    return platform.processor() or platform.machine()
+
+
+def check_same(found: Mapping[str, Any], path: Path) -> None:
+    """Refuse to mix what different versions compute.
+
+    Raises
+    ------
+    TorsadeError
+        When a run with the attributes `found`, stored at `path`, was begun with something else than there is
+        now that may round otherwise.
+    """
+    advice = (
+        "which may round otherwise; go on with the earlier version, or give --overwrite (overwrite=True) in "
+        "place of resume to begin anew"
+    )
+    now, then = versions(), found["versions"]
+    for name in SAME_VERSIONS:
+        if now[name] != then.get(name):
+            before = f"{name} {then[name]}" if name in then else f"an unknown version of {name}"
+            raise TorsadeError(
+                f"{str(path)!r} was begun with {before}, and this is {name} {now[name]}, {advice}"
+            )
+    kernels = _compile.source_hash()
+    if found.get("kernels") != kernels:
+        before = found.get("kernels", "unknown")
+        raise TorsadeError(
+            f"{str(path)!r} was begun with other kernels (sources {before}, and here {kernels}), {advice}"
+        )
