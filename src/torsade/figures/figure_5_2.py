@@ -111,7 +111,7 @@ def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Cho
         below.set(xlabel="s/L, from the largest on", ylabel=r"energy per length ($E_b h^2$)")
         below.margins(x=0.0)
         below.set_ylim(bottom=0.0)
-        below.legend(frameon=False, ncols=3, fontsize=7, loc="upper right")
+        below.legend(frameon=False, ncols=3, fontsize=7, loc="lower right")
         panels.letter(below, "B", -0.07)
         panels.save(figure, path)
 
