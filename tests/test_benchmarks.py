@@ -51,6 +51,7 @@ SCRIPTS = (
     "tails",
     "torque_writhe",
     "tightening",
+    "batteries",
     "breaking",
     "third_break",
     "movies",

@@ -34,6 +34,8 @@ class Assembly(NamedTuple):
     fiber_length : (n_fibers,) rest length [m]
     node_start, edge_start, hinge_start : (n_fibers + 1,) offsets
     closed : (n_fibers,) whether the fiber is closed
+    ends_meet : (n_fibers,) whether the last edge lies before the first where contacts between neighbours are
+        left out: of closed fibers, and of those just cut, whose ends lie face to face
     """
 
     edges: Ints
@@ -49,6 +51,7 @@ class Assembly(NamedTuple):
     edge_start: Ints
     hinge_start: Ints
     closed: Bools
+    ends_meet: Bools
 
 
 class State(NamedTuple):
@@ -91,7 +94,17 @@ def assemble(
     flags = [False] * len(strands) if closed is None else list(closed)
     parts = [_fiber(x, c, f) for f, (x, c) in enumerate(zip(strands, flags, strict=True))]
     lengths = [p[2] for p in parts] if rest_lengths is None else [np.asarray(r, float) for r in rest_lengths]
-    node_start = np.cumsum([0] + [len(x) for x in strands], dtype=np.int64)
+    return _joined([len(x) for x in strands], flags, [(p[0], p[1]) for p in parts], lengths)
+
+
+def _joined(
+    nodes: Sequence[int],
+    closed: Sequence[bool],
+    parts: Sequence[tuple[Ints, Ints]],
+    lengths: Sequence[Floats],
+) -> Assembly:
+    """The assembly of fibers of so many nodes, with their edges and hinges counted from zero."""
+    node_start = np.cumsum([0, *nodes], dtype=np.int64)
     edge_start = np.cumsum([0] + [len(p[0]) for p in parts], dtype=np.int64)
     hinge_start = np.cumsum([0] + [len(p[1]) for p in parts], dtype=np.int64)
     edges = np.concatenate([p[0] + node_start[f] for f, p in enumerate(parts)])
@@ -116,7 +129,8 @@ def assemble(
         node_start=node_start,
         edge_start=edge_start,
         hinge_start=hinge_start,
-        closed=np.array(flags, dtype=np.bool_),
+        closed=np.array(closed, dtype=np.bool_),
+        ends_meet=np.array(closed, dtype=np.bool_),
     )
 
 
@@ -148,6 +162,8 @@ def split(a: Assembly, hinge: int) -> Assembly:
     fiber_length = np.insert(a.fiber_length, fiber, first)
     fiber_length[fiber + 1] -= first
     shift = np.arange(len(a.node_start)) > fiber
+    ends_meet = np.insert(a.ends_meet, fiber, False)
+    ends_meet[fiber + 1] = False
     return Assembly(
         edges=edges,
         hinges=hinges,
@@ -162,7 +178,54 @@ def split(a: Assembly, hinge: int) -> Assembly:
         edge_start=np.insert(a.edge_start, fiber + 1, after),
         hinge_start=np.insert(a.hinge_start - shift, fiber + 1, hinge),
         closed=np.insert(a.closed, fiber, False),
+        ends_meet=ends_meet,
     )
+
+
+def opened(a: Assembly, state: State, hinge: int) -> tuple[Assembly, State]:
+    """A closed fiber cut at a hinge, which is then no more: the open fiber begins and ends at its node.
+
+    The node is doubled. All else is carried along to the bit: positions, rates, and the twist of every other
+    hinge. The ends still count as neighbours (`ends_meet`), since they lie face to face; see `parted`.
+
+    Raises
+    ------
+    TorsadeError
+        When the fiber is open.
+    """
+    _, after, node = (int(i) for i in a.hinges[hinge])
+    fiber = int(a.edge_fiber[after])
+    if not a.closed[fiber]:
+        raise TorsadeError(f"fiber {fiber} is open, and only closed fibers are opened; split it instead")
+    nodes, edges, hinges = (
+        _from(start, fiber, first)
+        for start, first in ((a.node_start, node), (a.edge_start, after), (a.hinge_start, hinge))
+    )
+    nodes = np.insert(nodes, a.node_start[fiber + 1], node)
+    hinges = np.delete(hinges, a.hinge_start[fiber])
+    sizes, closed = np.diff(a.node_start), a.closed.copy()
+    sizes[fiber] += 1
+    closed[fiber] = False
+    rest = np.split(a.rest_length[edges], a.edge_start[1:-1])
+    parts = [_numbered(n, c) for n, c in zip(sizes.tolist(), closed.tolist(), strict=True)]
+    cut = _joined(sizes.tolist(), closed.tolist(), parts, rest)._replace(ends_meet=a.ends_meet.copy())
+    x, theta, director, reference_twist, v, omega = state
+    return cut, State(
+        x[nodes], theta[edges], director[edges], reference_twist[hinges], v[nodes], omega[edges]
+    )
+
+
+def _from(start: Ints, fiber: int, first: int) -> Ints:
+    """Indices of all fibers in order, those of one beginning with `first`."""
+    order = np.arange(start[-1])
+    mine = slice(int(start[fiber]), int(start[fiber + 1]))
+    order[mine] = np.roll(order[mine], int(start[fiber]) - first)
+    return order
+
+
+def parted(a: Assembly) -> Assembly:
+    """The assembly after the ends of fibers that were opened have come apart: they may touch again."""
+    return a._replace(ends_meet=a.closed.copy())
 
 
 def _fiber(x: Floats, closed: bool, fiber: int) -> tuple[Ints, Ints, Floats]:
@@ -171,12 +234,7 @@ def _fiber(x: Floats, closed: bool, fiber: int) -> tuple[Ints, Ints, Floats]:
     if n < (3 if closed else 2):
         needed = "a closed fiber needs at least 3" if closed else "an open fiber needs at least 2"
         raise TorsadeError(f"fiber {fiber} has {n} node{'' if n == 1 else 's'}; {needed}: give more nodes.")
-    start = np.arange(n if closed else n - 1, dtype=np.int64)
-    edges = np.stack([start, (start + 1) % n], axis=1)
-    if closed:
-        hinges = np.stack([(start - 1) % n, start, start], axis=1)
-    else:
-        hinges = np.stack([start[:-1], start[1:], start[1:]], axis=1)
+    edges, hinges = _numbered(n, closed)
     lengths = np.linalg.norm(x[edges[:, 1]] - x[edges[:, 0]], axis=1)
     if not np.all(lengths > 0):
         e = int(np.argmin(lengths))
@@ -192,6 +250,15 @@ def _fiber(x: Floats, closed: bool, fiber: int) -> tuple[Ints, Ints, Floats]:
             f"fiber {fiber} folds straight back at node {node}; fibers bend smoothly: move the node."
         )
     return edges, hinges, lengths
+
+
+def _numbered(n: int, closed: bool) -> tuple[Ints, Ints]:
+    """Edges and hinges of a fiber of n nodes, counted from zero."""
+    start = np.arange(n if closed else n - 1, dtype=np.int64)
+    edges = np.stack([start, (start + 1) % n], axis=1)
+    if closed:
+        return edges, np.stack([(start - 1) % n, start, start], axis=1)
+    return edges, np.stack([start[:-1], start[1:], start[1:]], axis=1)
 
 
 def initial_state(assembly: Assembly, strands: Sequence[Floats]) -> State:
@@ -210,3 +277,23 @@ def initial_state(assembly: Assembly, strands: Sequence[Floats]) -> State:
             twist[assembly.hinge_start[f]] = -frame.holonomy
     director = np.ascontiguousarray(np.concatenate([frame.u for frame in frames]))
     return State(x, np.zeros(n_edges), director, twist, np.zeros_like(x), np.zeros(n_edges))
+
+
+def twisted(assembly: Assembly, state: State, density: float) -> State:
+    """The same centerlines with the twist of every hinge at density [rad/m] times its length.
+
+    The ends of a closed fiber are fused at the angle that takes, which need not be a whole number of turns:
+    it is an offset of the reference twist at the seam. The total twist of a closed fiber, and so its link,
+    is any real number, and stays what it is.
+    """
+    wanted = density * assembly.hinge_length
+    theta, reference_twist = np.zeros_like(state.theta), state.reference_twist.copy()
+    for f, closed in enumerate(assembly.closed):
+        hinges = slice(int(assembly.hinge_start[f]) + int(closed), int(assembly.hinge_start[f + 1]))
+        steps = wanted[hinges] - reference_twist[hinges]
+        theta[assembly.edge_start[f] + 1 : assembly.edge_start[f + 1]] = np.cumsum(steps)
+        if closed:
+            seam = int(assembly.hinge_start[f])
+            before, after, _ = assembly.hinges[seam]
+            reference_twist[seam] = wanted[seam] - theta[after] + theta[before]
+    return state._replace(theta=theta, reference_twist=reference_twist)

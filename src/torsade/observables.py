@@ -14,12 +14,14 @@ from numpy.typing import ArrayLike
 
 from torsade.arrays import Floats
 from torsade.assembly import Assembly, State
+from torsade.material import Material, Section
 
 __all__ = [
     "SETTLED",
     "Friction",
     "SurfaceStrain",
     "edge_lengths",
+    "energy_density",
     "fastest",
     "fiber_lengths",
     "friction",
@@ -30,6 +32,7 @@ __all__ = [
     "log_strain",
     "pull_speed",
     "surface_strain",
+    "surface_stress",
     "twist",
 ]
 
@@ -121,6 +124,44 @@ def surface_strain(assembly: Assembly, state: State, radius: float) -> SurfaceSt
     ends, nodes = assembly.edges.ravel(), len(bend)
     total = np.bincount(ends, np.repeat(extension, 2), nodes)
     return SurfaceStrain(total / np.bincount(ends, minlength=nodes), bend, twisted)
+
+
+def surface_stress(assembly: Assembly, state: State, material: Material, radius: float) -> Floats:
+    """Von Mises stress at every hinge where it is largest on the surface [Pa], shape (n_hinges,).
+
+    √(σ² + 3τ²) with σ = |E ε| + E_b h κ, of stretch ε and bending, and τ = μ h |θ'|, of twist; ε is the mean
+    of the two edges, κ per present and θ' per rest length.
+    """
+    strain = edge_lengths(assembly, state) / assembly.rest_length - 1
+    a, b = assembly.hinges[:, 0], assembly.hinges[:, 1]
+    bend = material.E_b * h_kappa(assembly, state, radius)
+    normal = np.abs(0.5 * material.E * (strain[a] + strain[b])) + bend
+    shear = material.mu * radius * hinge_twist(assembly, state) / assembly.hinge_length
+    return np.asarray(np.sqrt(normal**2 + 3 * shear**2))
+
+
+def energy_density(assembly: Assembly, state: State, material: Material, section: Section) -> Floats:
+    """Stretch, bending and twist energy per rest length at every node [J/m], shape (n_nodes,).
+
+    Stretch is that of the edges that meet there; where a fiber ends it is all there is.
+    """
+    stretch = 0.5 * material.E * section.A * (edge_lengths(assembly, state) / assembly.rest_length - 1) ** 2
+    ends, nodes = assembly.edges.ravel(), len(assembly.node_length)
+    shared = np.repeat(0.5 * stretch * assembly.rest_length, 2)
+    density = np.bincount(ends, shared, nodes) / assembly.node_length
+    kappa = _rest_curvature(assembly, state)
+    twist_density = hinge_twist(assembly, state) / assembly.hinge_length
+    B, C = material.E_b * section.I, material.mu * section.J
+    density[assembly.hinges[:, 2]] += 0.5 * (B * kappa**2 + C * twist_density**2)
+    return density
+
+
+def _rest_curvature(assembly: Assembly, state: State) -> Floats:
+    """Curvature of every hinge per rest arclength [1/m], shape (n_hinges,)."""
+    l = edge_lengths(assembly, state)
+    a, b = assembly.hinges[:, 0], assembly.hinges[:, 1]
+    present = 0.5 * (l[a] + l[b])
+    return np.asarray(hinge_curvature(assembly, state) * present / assembly.hinge_length)
 
 
 def log_strain(assembly: Assembly, state: State, radius: float) -> Floats:

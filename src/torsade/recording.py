@@ -51,7 +51,7 @@ class Recording:
     def __init__(
         self,
         sizes: Mapping[str, int],
-        fixed: Mapping[str, tuple[str, NDArray[Any]]],
+        fixed: Mapping[str, tuple[str | tuple[str, ...], NDArray[Any]]],
         names: tuple[str, ...],
         attrs: dict[str, Any],
     ) -> None:
@@ -84,7 +84,7 @@ class Recording:
     def begin(
         cls,
         sizes: Mapping[str, int],
-        fixed: Mapping[str, tuple[str, NDArray[Any]]],
+        fixed: Mapping[str, tuple[str | tuple[str, ...], NDArray[Any]]],
         names: tuple[str, ...],
         attrs: dict[str, Any],
         derive: Callable[[dict[str, Floats]], dict[str, Floats]],
@@ -330,14 +330,19 @@ class Recording:
 
         variables: dict[str, Any] = {}
         for name, values in self._arrays.items():
-            dims, unit, meaning = VARIABLES[name]
+            dims = VARIABLES[name][0]
             cut = values if sizes is None else values[: sizes[dims[0]]]
-            variables[name] = (dims, cut, {"units": unit, "long_name": meaning})
+            variables[name] = (dims, cut, _about(name))
         time_axis = {"time": variables.pop("time")}
-        for name, (dim, values) in self._fixed.items():
-            _, unit, meaning = VARIABLES[name]
-            variables[name] = ((dim,), values, {"units": unit, "long_name": meaning})
+        for name, (given, values) in self._fixed.items():
+            variables[name] = (given, values, _about(name))
         return xarray.Dataset(variables, coords=time_axis, attrs=dict(self.attrs))
+
+
+def _about(name: str) -> dict[str, str]:
+    """Unit and meaning of a variable."""
+    _, unit, meaning = VARIABLES[name]
+    return {"units": unit, "long_name": meaning}
 
 
 def _same_run(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) -> None:

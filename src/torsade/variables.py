@@ -9,6 +9,9 @@ __all__ = ["BYTES_PER_NODE", "FORMAT", "SAMPLE", "SINGLE_PRECISION", "VARIABLES"
 FORMAT = 1
 """Of results, counted up whenever a reader of an earlier one would misunderstand it."""
 
+_CHARGE = "charge"
+"""Dimension of what is recorded before t = 0, when a battery is charged."""
+
 VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "time": (("time",), "s", "time"),
     "separation": (("time",), "m", "pulled end from clamped end, along the pull"),
@@ -54,6 +57,28 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "stress": (("time", "node"), "Pa", "stress by the criterion chosen, 0 at ends"),
     "angle": (("time",), "rad", "angle that the lower end has turned"),
     "sample_angle": (("sample",), "rad", "angle at the times of samples"),
+    "writhe": (("time",), "1", "writhe of the centerline, in turns"),
+    "average_crossings": (("time",), "1", "crossings in the mean over all directions of view"),
+    "fewest_crossings": (("time",), "1", "crossings seen from where they are fewest"),
+    "energy_density": (("time", "node"), "J/m", "stretch, bending and twist energy per rest length"),
+    "sample_energy": (("sample",), "J", "stored energy at the times of samples"),
+    "sample_dissipation": (("sample",), "J", "energy lost to drag until the times of samples"),
+    "sample_fewest_crossings": (("sample",), "1", "fewest crossings at the times of samples"),
+    **{
+        f"charge_{name}": ((_CHARGE, *more), unit, f"{meaning}, while the fiber was closed")
+        for name, more, unit, meaning in (
+            ("time", (), "s", "time since it was tied and twisted"),
+            ("energy_stretch", (), "J", "stretch energy"),
+            ("energy_bend", (), "J", "bending energy"),
+            ("energy_twist", (), "J", "twist energy"),
+            ("energy_contact", (), "J", "contact energy"),
+            ("twist", (), "1", "twist, in turns"),
+            ("writhe", (), "1", "writhe, in turns"),
+            ("link", (), "1", "twist and writhe together, in turns"),
+            ("position", ("closed_node", "space"), "m", "node positions"),
+            ("energy_density", ("closed_node",), "J/m", "stretch, bending and twist energy per rest length"),
+        )
+    },
     "node_start": (("fiber_bound",), "1", "first node of every fiber, and the number of nodes"),
     "closed": (("fiber",), "1", "whether a fiber is closed"),
 }
@@ -68,7 +93,7 @@ STRAINED = (
     "velocity",
     "self_torque",
 )
-SINGLE_PRECISION = (*STRAINED, "twist_density", "stress")
+SINGLE_PRECISION = (*STRAINED, "twist_density", "stress", "energy_density")
 """Variables stored as 32-bit floats."""
 
 BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in STRAINED)

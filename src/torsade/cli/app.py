@@ -40,6 +40,7 @@ OPTIONS: dict[str, tuple[type, str]] = {
 """Options of every protocol besides the fields of its specification: type and help text."""
 
 EXAMPLES = {
+    "battery": "--knot 4_1 --twist 1.0 --out battery.zarr --picture battery.png --plot discharge.png",
     "prison-escape": '--knot reef --force "15 N" --out reef.zarr --picture reef.png',
     "bend-twist": '--length "24 cm" --end-distance "19 cm" --twist "270 deg" --plot bent.png',
     "pendulum": '--turn "45 deg" --mass "20 g" --out pendulum.zarr --plot pendulum.png',
@@ -119,7 +120,8 @@ def build(arguments: list[str]) -> App:
         name="run",
         help="Run an experiment: prison-escape (pull a bend), tighten (pull a knot in one strand), "
         "reidemeister (make a Reidemeister move), bend-twist (bend a twisted fiber), snap-twist (break a "
-        "twisted rod), snap-quench (break a rod at speed) or pendulum (a mass that turns on a rod).",
+        "twisted rod), snap-quench (break a rod at speed), pendulum (a mass that turns on a rod) or battery "
+        "(cut a closed, twisted knot).",
         help_epilogue="See the options with: torsade run prison-escape --help",
         version_flags=[],
     )

@@ -227,7 +227,7 @@ def _movie(result: Result, path: str, quiet: bool) -> None:
 
 
 def _plot(result: Result, path: str) -> None:
-    from torsade.view import cascade, plots
+    from torsade.view import battery, cascade, plots
 
     by_protocol = {
         "prison-escape": plots.plot_separation,
@@ -235,6 +235,7 @@ def _plot(result: Result, path: str) -> None:
         "reidemeister": plots.plot_move,
         "bend-twist": plots.plot_bent,
         "pendulum": plots.plot_swing,
+        "battery": battery.plot_battery,
         **dict.fromkeys(BREAKING, cascade.plot_cascade),
     }
     by_protocol[result.protocol](result.dataset, path)

@@ -25,10 +25,11 @@ _STAGES = ("start", "top", "end")
 
 def print_table(result: Result, report: dict[str, Any]) -> None:
     """Print what was done and what came of it."""
-    from torsade.cli.rods_table import ROWS
+    from torsade.cli import batteries_table, rods_table
 
-    if result.protocol in ROWS:
-        print_rows(ROWS[result.protocol](result, report))
+    own = rods_table.ROWS | batteries_table.ROWS
+    if result.protocol in own:
+        print_rows(own[result.protocol](result, report))
     else:
         print_rows((*_asked(result), *_found(result, report), *_spent(report)))
 

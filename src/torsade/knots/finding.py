@@ -13,10 +13,19 @@ from torsade.errors import TorsadeError, counted, quoted
 from torsade.knots.entries import KINDS, Entry, entries, strand_knot, suture, torus
 from torsade.topology.codes import code_kind, from_text
 from torsade.topology.diagram import Diagram
-from torsade.topology.named import looks_like_a_name, named_diagram
+from torsade.topology.named import COMMON_NAMES, looks_like_a_name, named_diagram
 from torsade.topology.tangle import cut
 
-__all__ = ["bend_diagram", "bend_names", "find", "interpret", "known_bend", "known_strand", "search"]
+__all__ = [
+    "bend_diagram",
+    "bend_names",
+    "find",
+    "interpret",
+    "known_bend",
+    "known_closed",
+    "known_strand",
+    "search",
+]
 
 _SUTURE = r"\(?\s*([+-]?\d{1,6})\s*,\s*([+-]?\d{1,6})\s*\)?"
 
@@ -160,6 +169,24 @@ def known_strand(name: str) -> Entry:
     elif entry.kind == "closed":
         advice = f"give 'open {entry.name}' for it cut open"
     raise TorsadeError(f"{quoted(name)} is {_what(entry)}, and one strand with two ends is wanted; {advice}")
+
+
+def known_closed(name: str) -> str:
+    """The name of a closed knot in the table, where it has one, from a name or a code.
+
+    >>> known_closed("trefoil"), known_closed("unknot")
+    ('3_1', '0_1')
+
+    Raises:
+        TorsadeError: nothing is called so, or what is has ends or more than one strand.
+    """
+    entry = interpret(name)
+    if entry.diagram.ends or len(entry.diagram.strands) != 1:
+        raise TorsadeError(
+            f"{quoted(name)} is {_what(entry)}, and one closed strand is wanted; give a knot such as 4_1, or "
+            "unknot for a ring"
+        )
+    return COMMON_NAMES.get(entry.name, entry.name)
 
 
 def _word(name: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from torsade.protocols.base import Spec
+from torsade.protocols.battery import Battery
 from torsade.protocols.bend_twist import BendTwist
 from torsade.protocols.ensemble import ensemble
 from torsade.protocols.files import PROTOCOLS, load_spec
@@ -15,6 +16,7 @@ from torsade.protocols.tighten import Tighten
 
 __all__ = [
     "PROTOCOLS",
+    "Battery",
     "BendTwist",
     "Pendulum",
     "PrisonEscape",

@@ -152,7 +152,7 @@ class Trial(NamedTuple):
     conclude : samples, and the time [s] at which nothing resisted the load any more or None → numbers and
         lists that belong to the run as a whole
     sizes : of the dimensions of what is recorded, besides time and samples
-    fixed : arrays that do not change, by name, each with its dimension
+    fixed : arrays that do not change, by name, each with its dimension or dimensions
     start : what tells this start from that of another run of the same specification
     derived : names of the derived histories
     sampled : names recorded at times that do not depend on the number of frames
@@ -163,6 +163,7 @@ class Trial(NamedTuple):
     over : asked whenever something is recorded after t = 0: whether there is nothing left to see
     later : times [s] at which ends and loads change
     begin : called with the present time [s] before the fibers move on: put these ends and loads in place
+    frame_times, sample_times : of frames and samples [s], from 0 on; evenly spaced unless given
     """
 
     motion: Motion
@@ -170,7 +171,7 @@ class Trial(NamedTuple):
     frame: Callable[[], dict[str, float | Floats]]
     conclude: Callable[[Mapping[str, Floats], float | None], Mapping[str, Any]]
     sizes: Mapping[str, int]
-    fixed: Mapping[str, tuple[str, NDArray[Any]]]
+    fixed: Mapping[str, tuple[str | tuple[str, ...], NDArray[Any]]]
     start: str
     derive: Callable[[Mapping[str, Floats]], dict[str, Floats]] = lambda history: {}
     derived: tuple[str, ...] = ()
@@ -181,6 +182,8 @@ class Trial(NamedTuple):
     over: Callable[[], bool] = lambda: False
     later: tuple[float, ...] = ()
     begin: Callable[[float], None] = lambda time: None
+    frame_times: Floats | None = None
+    sample_times: Floats | None = None
 
 
 class Driven(Spec):
@@ -237,3 +240,7 @@ class Driven(Spec):
     @abstractmethod
     def trial(self) -> Trial:
         """The fibers at t = 0, checked, what is done to them and what is measured on them."""
+
+    def prepared(self, tell: Progress) -> Trial:
+        """The trial, by a specification whose fibers take long to be made: it tells how far it has come."""
+        return self.trial()

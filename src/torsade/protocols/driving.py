@@ -36,7 +36,7 @@ def drive(
 ) -> Result:
     """Run a specification; see `Driven.run`."""
     tell = progress or (lambda share, note: None)
-    trial = spec.trial()
+    trial = spec.prepared(tell)
     motion = trial.motion
     recording = _begin(spec, trial, out, resume, overwrite)
     try:
@@ -70,9 +70,9 @@ def _begin(spec: Driven, trial: Trial, out: str | Path | None, resume: bool, ove
     """A recording for all that this protocol measures."""
     attrs = spec.attributes() | {"start": trial.start} | dict(trial.about)
     samples = [SAMPLE + name for name in ("time", *trial.sampled)] if trial.sampled else []
-    sizes = {"time": spec.frames + 1, "sample": len(_sample_times(spec, trial))} | dict(trial.sizes)
+    counts = {"time": len(_frame_times(spec, trial)), "sample": len(_sample_times(spec, trial))}
     return Recording.begin(
-        sizes,
+        counts | dict(trial.sizes),
         trial.fixed,
         (*trial.names, *trial.derived, *samples),
         attrs,
@@ -117,19 +117,27 @@ def seconds(t: float, scale: float) -> str:
     return f"{t:.3f} s" if scale >= 0.1 else f"{1e3 * t:.3f} ms"
 
 
+def _frame_times(spec: Driven, trial: Trial) -> Floats:
+    """Times of frames [s]."""
+    if trial.frame_times is not None:
+        return trial.frame_times
+    return np.linspace(0.0, spec.lasting, spec.frames + 1)
+
+
 def _sample_times(spec: Driven, trial: Trial) -> Floats:
     """Times of samples [s], none when nothing is sampled: every 10 ms, or a hundred in a short run."""
     if not trial.sampled:
         return np.empty(0)
+    if trial.sample_times is not None:
+        return trial.sample_times
     wanted = math.ceil(spec.lasting / SAMPLE_EVERY * (1 - 1e-9))
     return np.linspace(0.0, spec.lasting, min(max(wanted, FEWEST_SAMPLES), MOST_SAMPLES) + 1)
 
 
 def _stops(spec: Driven, trial: Trial) -> list[tuple[float, bool, bool]]:
     """Times at which a run stops [s], and whether for a frame, a sample, both, or other ends and loads."""
-    frames = np.linspace(0.0, spec.lasting, spec.frames + 1)
     stops: list[tuple[float, bool, bool]] = []
-    marked = [(t, True, False) for t in frames.tolist()]
+    marked = [(t, True, False) for t in _frame_times(spec, trial).tolist()]
     marked += [(t, False, True) for t in _sample_times(spec, trial).tolist()]
     marked += [(t, False, False) for t in trial.later if t < spec.lasting]
     for t, frame, sample in sorted(marked, key=lambda stop: stop[0]):

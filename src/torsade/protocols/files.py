@@ -15,6 +15,7 @@ from typing import Any
 
 from torsade.errors import TorsadeError, quoted
 from torsade.protocols.base import Spec
+from torsade.protocols.battery import Battery
 from torsade.protocols.bend_twist import BendTwist
 from torsade.protocols.pendulum import Pendulum
 from torsade.protocols.prison_escape import PrisonEscape
@@ -34,6 +35,7 @@ PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
         "snap-twist": SnapTwist,
         "snap-quench": SnapQuench,
         "pendulum": Pendulum,
+        "battery": Battery,
     }
 )
 """The specification of every protocol, by name."""

@@ -1,7 +1,8 @@
 """Verlet lists: pairs of edges that may come into contact before the list is made again.
 
 Edges of one fiber are excluded when they are at most exclusion_edges apart in number, or nearer than
-exclusion_length [m] in rest arclength; around the seam of a closed fiber the shorter way counts.
+exclusion_length [m] in rest arclength; around the seam of a closed fiber, and across the cut of one just
+opened, the shorter way counts.
 """
 
 from __future__ import annotations
@@ -105,7 +106,7 @@ def without_excluded(
     a: Assembly, pairs: Ints, mid: Floats, cutoff: float, exclusion_edges: Index, exclusion_length: float
 ) -> Ints:
     """The pairs (n_pairs, 2) with midpoints nearer than cutoff [m] that are not excluded."""
-    edge_fiber, edge_start, closed = a.edge_fiber, a.edge_start, a.closed
+    edge_fiber, edge_start, ends_meet = a.edge_fiber, a.edge_start, a.ends_meet
     arclength, fiber_length = a.edge_arclength, a.fiber_length
     kept = np.empty((pairs.shape[0], 2), np.int64)
     count = NONE
@@ -120,7 +121,7 @@ def without_excluded(
         if keep and fiber == edge_fiber[f]:
             apart = abs(e - f)
             distance = abs(arclength[e] - arclength[f])
-            if closed[fiber]:
+            if ends_meet[fiber]:
                 apart = min(apart, edge_start[fiber + 1] - edge_start[fiber] - apart)
                 distance = min(distance, fiber_length[fiber] - distance)
             keep = apart > exclusion_edges and distance >= exclusion_length

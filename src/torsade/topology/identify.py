@@ -34,9 +34,10 @@ from torsade.topology.codes import from_gauss, to_pd
 from torsade.topology.diagram import Diagram
 from torsade.topology.factor import summands
 from torsade.topology.invariants import Code, oriented
+from torsade.topology.isotopy import thinned
 from torsade.topology.links import match_link, prime_links
 from torsade.topology.lookup import Match, match_knot
-from torsade.topology.names import mirror_name, prime_factors, split_union, sum_name
+from torsade.topology.names import UNKNOT, mirror_name, prime_factors, split_union, sum_name
 from torsade.topology.projection import project, spiral
 from torsade.topology.simplify import simplify
 from torsade.topology.table import entries
@@ -231,8 +232,11 @@ def identify_open(x: ArrayLike, directions: int = 100, seed: int = 0) -> OpenIde
     counts: Counter[str] = Counter()
     turn = Rotation.random(rng=np.random.default_rng(seed)).as_matrix()
     for u in spiral(directions) @ turn:
-        closed = np.concatenate([nodes, nodes[-1:] + size * u, nodes[:1] + size * u])
-        counts[str(identify(project([closed], True, direction=_beside(u)).diagram, patience=20))] += 1
+        closed = thinned(np.concatenate([nodes, nodes[-1:] + size * u, nodes[:1] + size * u]))
+        if len(closed) == 3:
+            counts[UNKNOT] += 1
+        else:
+            counts[str(identify(project([closed], True, direction=_beside(u)).diagram, patience=20))] += 1
     return OpenIdentity({name: n / directions for name, n in counts.most_common()}, directions)
 
 

@@ -14,7 +14,7 @@ from torsade.arrays import Bools, Floats
 from torsade.curve import length
 from torsade.topology.triangle_moves import OUT, RUN, Chain, enclose_all, move_all, take_out
 
-__all__ = ["carried_over", "chain_of", "thinned_to"]
+__all__ = ["carried_over", "chain_of", "thinned", "thinned_to"]
 
 _SHAKE = 1e-8
 """How far nodes are put from where they stand, in edges, so that none lies on a line or plane of others."""
@@ -64,6 +64,17 @@ def thinned_to(strands: Sequence[Floats], closed: Sequence[bool], keep: Sequence
         keep: which nodes of each are to stay, shapes (n,); ends of open strands must.
     """
     return int(take_out(chain_of(strands, closed), ~np.concatenate(keep), np.inf)) == 0
+
+
+def thinned(x: Floats) -> Floats:
+    """A closed polygon of the same knot with as few nodes as taking them out one by one leaves, 3 or more.
+
+    Args:
+        x: nodes, shape (n, 3).
+    """
+    chain = chain_of([x], [True])
+    take_out(chain, np.ones(len(x), dtype=bool), np.inf)
+    return np.asarray(x[chain.after != OUT])
 
 
 def chain_of(strands: Sequence[Floats], closed: Sequence[bool], like: Sequence[Floats] = ()) -> Chain:

@@ -11,6 +11,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from torsade.view.battery import draw_battery, plot_battery
     from torsade.view.cascade import along_rod, draw_pieces, pieces_at, plot_cascade
     from torsade.view.film import movie
     from torsade.view.plots import plot_move, plot_separation, plot_swing, plot_tightening
@@ -20,9 +21,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "along_rod",
+    "draw_battery",
     "draw_pieces",
     "movie",
     "pieces_at",
+    "plot_battery",
     "plot_cascade",
     "plot_move",
     "plot_separation",
@@ -37,6 +40,8 @@ __all__ = [
 _HOMES = {
     "along_rod": "torsade.view.cascade",
     "pieces_at": "torsade.view.cascade",
+    "draw_battery": "torsade.view.battery",
+    "plot_battery": "torsade.view.battery",
     "draw_pieces": "torsade.view.cascade",
     "movie": "torsade.view.film",
     "plot_cascade": "torsade.view.cascade",

@@ -126,13 +126,17 @@ def picture(
     arrows: Sequence[Arrow] = (),
     palette: Callable[[Floats], Floats] = strain_colour,
     bar: bool = True,
+    whole: bool = False,
 ) -> Floats:
-    """The picture that `render` writes, as an array (height, width, 3) of sRGB from 0 to 1."""
+    """The picture that `render` writes, as an array (height, width, 3) of sRGB from 0 to 1.
+
+    With whole=True all of the strands is in the frame, not the knot that they form.
+    """
     nodes, loops = _checked(strands, closed, radius, values, size)
     origin = np.concatenate(nodes).mean(axis=0)
     nodes = [(x - origin) / radius for x in nodes]
     curves = [smooth_centerline(x, loop, SAMPLE) for x, loop in zip(nodes, loops, strict=True)]
-    view = _view(curves, loops, size, direction, fill)
+    view = _view(curves, loops, size, direction, fill, whole)
     meshes = [
         tube(x, 1.0, loop, sides=64, spacing=0.125, rounding=0.3)
         for x, loop in zip(nodes, loops, strict=True)
@@ -187,9 +191,10 @@ def _view(
     size: tuple[int, int],
     direction: ArrayLike | None,
     fill: float | None,
+    whole: bool,
 ) -> View:
     """The camera, in radii."""
-    body = np.concatenate(knot_body(curves, loops, 1.0))
+    body = np.concatenate([c.x for c in curves] if whole else knot_body(curves, loops, 1.0))
     if fill is None:
         fill = 0.68 if len(body) < sum(len(c.x) for c in curves) else 0.84
     if direction is None:

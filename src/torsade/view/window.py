@@ -11,6 +11,7 @@ import numpy as np
 
 from torsade.errors import TorsadeError
 from torsade.view._extra import require
+from torsade.view.battery import draw_battery
 from torsade.view.camera import best_side
 from torsade.view.cascade import draw_pieces
 from torsade.view.scene import render_result
@@ -56,7 +57,9 @@ def show(result: Result, picture: str | Path | None = None, frame: int | None = 
 
 
 def draw_result(result: Result, path: str | Path, frame: int | None = None) -> Path:
-    """Draw a frame to a PNG file; of a rod that breaks, without a frame, some moments."""
+    """Draw a frame to a PNG file; of a battery, or a rod that breaks, without a frame, some moments."""
+    if frame is None and "charge_position" in result.dataset:
+        return draw_battery(result.dataset, path)
     if "piece_start" in result.dataset:
         return draw_pieces(result.dataset, path, frame)
     return render_result(result.dataset, path, frame=result.last_held if frame is None else frame)
