@@ -60,8 +60,13 @@ KINDS: Mapping[str, tuple[type, ...]] = {
     "steps": (int,),
     "radius": (int, float),
     "wall_s": (int, float),
+    "c_f": (float, type(None)),
+    "slipped_at_s": (float, type(None)),
 }
-"""Of attributes that every result may have."""
+"""Of attributes that a result may have."""
+
+NEEDED = ("protocol", "spec", "status")
+"""Attributes without which nobody knows what it is."""
 
 
 class Stored(NamedTuple):
@@ -158,6 +163,9 @@ def _told(path: Path) -> Iterator[None]:
 
 
 def _check_attributes(found: Mapping[str, Any]) -> None:
+    for name in NEEDED:
+        if name not in found:
+            raise _UnfitError(f"it has no attribute {name!r}")
     for name, kinds in KINDS.items():
         value = found.get(name)
         if name in found and (not isinstance(value, kinds) or isinstance(value, bool)):

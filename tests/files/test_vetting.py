@@ -44,6 +44,15 @@ def attribute(name: str, value: object) -> Change:
     return change
 
 
+def without(name: str) -> Change:
+    def change(path: Path) -> None:
+        about = json.loads((path / "zarr.json").read_text())
+        del about["attributes"][name]
+        (path / "zarr.json").write_text(json.dumps(about))
+
+    return change
+
+
 def variable(name: str, **changes: Any) -> Change:
     return lambda path: described(path, name, **changes)
 
@@ -171,6 +180,9 @@ CASES: dict[str, tuple[Change, str]] = {
     "half a description": (not_json, "is not JSON"),
     "a spec that is none": (attribute("spec", "[1, 2"), "its attribute 'spec' does not hold JSON"),
     "a spec of something else": (attribute("spec", 3), "its attribute 'spec' is 3"),
+    "no spec": (without("spec"), "it has no attribute 'spec'"),
+    "no status": (without("status"), "it has no attribute 'status'"),
+    "friction in words": (attribute("c_f", "x"), "its attribute 'c_f' is 'x'"),
     "frames in words": (attribute("done", "many"), "its attribute 'done' is 'many'"),
     "frames that are not there": (attribute("done", 10**9), "done is 1000000000, more than there are"),
     "frames below none": (attribute("done", -1), "its attribute 'done' is -1"),

@@ -149,7 +149,7 @@ def _report(path: Path, result: Result) -> dict[str, Any] | None:
         return None
     try:
         return PROTOCOLS[result.protocol].report(result)
-    except (LookupError, TypeError, ValueError, AttributeError) as error:
+    except (LookupError, TypeError, ValueError, AttributeError, OverflowError) as error:
         if isinstance(error, TorsadeError):
             raise
         reason = " ".join(str(error).split()) or type(error).__name__
