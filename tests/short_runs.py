@@ -8,6 +8,7 @@ import numpy as np
 
 import torsade as ts
 from torsade.protocols import (
+    Battery,
     BendTwist,
     Pendulum,
     PrisonEscape,
@@ -28,6 +29,7 @@ SHORT: Mapping[str, Spec] = {
         SnapTwist(twist="60 deg", duration="0.4 ms", frames=20),
         SnapQuench(speed="0.5 m/s", approach="0.5 ms", after="0.4 ms", frames=20, disorder=0.02, seed=3),
         Pendulum(duration="0.4 s", frames=10),
+        Battery(knot="4_1", twist=1.0, nodes=60, charging="0.3 s", duration="0.3 s", frames=12),
     )
 }
 """By protocol."""

@@ -11,6 +11,7 @@ import torsade as ts
 from short_runs import SHORT, assert_same
 from torsade.errors import TorsadeError
 from torsade.protocols import PrisonEscape, SnapTwist, Spec, ensemble
+from torsade.protocols.ensemble import THREAD
 
 
 def bends() -> list[Spec]:
@@ -60,7 +61,7 @@ def test_ctrl_c_ends_all_runs() -> None:
     specs = [PrisonEscape(knot="reef", duration="1 ms" if k == 0 else "100 s") for k in range(3)]
     with pytest.raises(KeyboardInterrupt):
         ensemble(specs, threads=2, progress=lambda share, note: _thread.interrupt_main())
-    assert threading.active_count() < 3
+    assert not [thread for thread in threading.enumerate() if thread.name.startswith(THREAD)]
 
 
 def test_nonsense_is_refused() -> None:

@@ -17,6 +17,7 @@ from torsade.arrays import Floats
 from torsade.assembly import Assembly
 from torsade.material import Material, Section
 from torsade.motion.overdamped import Motion
+from torsade.protocols.patience import STOPPING, Patience
 from torsade.topology.identify import identify_curves
 from torsade.topology.isotopy import thinned
 from torsade.topology.measures import writhe
@@ -78,16 +79,21 @@ def charge(
     frames = [_frame(motion, material, section)]
     names = [_knot(motion.state.x)]
     until, loss = FIRST * unit, math.inf
-    while not (motion.time >= EARLIEST * longest and loss < AT_REST) and motion.time < longest:
-        until = min(until, longest)
-        while motion.time < until:
-            motion.advance(until, motion.at_once)
-            share = math.log1p(motion.time / (FIRST * unit)) / math.log1p(longest / (FIRST * unit))
-            tell(share, f"charging, t = {motion.time / unit:.3g} T_0")
-        frames.append(_frame(motion, material, section))
-        names.append(_knot(motion.state.x))
-        loss = _loss(*frames[-2:]) * unit
-        until *= FACTOR
+
+    def say(note: str) -> None:
+        tell(math.log1p(motion.time / (FIRST * unit)) / math.log1p(longest / (FIRST * unit)), note)
+
+    with Patience(lambda: say(STOPPING)) as patience:
+        while not (motion.time >= EARLIEST * longest and loss < AT_REST) and motion.time < longest:
+            until = min(until, longest)
+            while motion.time < until:
+                motion.advance(until, motion.at_once)
+                say(f"charging, t = {motion.time / unit:.3g} T_0")
+                patience.end()
+            frames.append(_frame(motion, material, section))
+            names.append(_knot(motion.state.x))
+            loss = _loss(*frames[-2:]) * unit
+            until *= FACTOR
     history = {name: np.array([frame[name] for frame in frames]) for name in frames[0]}
     for name in ("position", "energy_density"):
         history[name] = history[name].astype(np.float32)

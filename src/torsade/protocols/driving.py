@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from torsade import _compile
+from torsade import _compile, places
 from torsade.arrays import Floats
 from torsade.errors import TorsadeError
 from torsade.motion.moving import Motion, Outcome
-from torsade.protocols.patience import Interrupted, Patience
+from torsade.protocols.patience import STOPPING, Interrupted, Patience
 from torsade.recording import Recording
 from torsade.results import Result
 from torsade.variables import SAMPLE
@@ -36,7 +36,10 @@ def drive(
 ) -> Result:
     """Run a specification; see `Driven.run`."""
     tell = progress or (lambda share, note: None)
-    trial = spec.prepared(tell)
+    try:
+        trial = spec.prepared(tell)
+    except KeyboardInterrupt:
+        raise Interrupted(0.0, 0, None, earlier=_begun(out)) from None
     motion = trial.motion
     recording = _begin(spec, trial, out, resume, overwrite)
     try:
@@ -64,6 +67,12 @@ def drive(
         ) from None
     finally:
         recording.close()
+
+
+def _begun(out: str | Path | None) -> Path | None:
+    """The folder of what is done of an earlier run of that name, if there is one."""
+    part = None if out is None else places.part_of(Path(out))
+    return part if part is not None and places.attributes(part) else None
 
 
 def _begin(spec: Driven, trial: Trial, out: str | Path | None, resume: bool, overwrite: bool) -> Recording:
@@ -106,7 +115,7 @@ class _Clock:
 
     def stopping(self) -> None:
         """Say that Ctrl-C was heard."""
-        self._say("stopping ... (Ctrl-C again to stop at once)")
+        self._say(STOPPING)
 
     def _say(self, note: str) -> None:
         self._tell(self._motion.time / self._duration, note)

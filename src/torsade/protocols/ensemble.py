@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 __all__ = ["ensemble"]
 
+THREAD = "torsade-run"
+"""What names of threads begin with."""
+
 HEARTBEAT = 0.1
 """Time between looks at Ctrl-C [s]."""
 
@@ -74,7 +77,7 @@ def ensemble(
     stop = threading.Event()
     members = [_Member(spec, stop) for spec in specs]
     results = [members[0].run()]  # alone, so that kernels are compiled once
-    with ThreadPoolExecutor(threads or _cores()) as pool:
+    with ThreadPoolExecutor(threads or _cores(), THREAD) as pool:
         futures = [pool.submit(member.run) for member in members[1:]]
         try:
             _watch(futures, members, progress)

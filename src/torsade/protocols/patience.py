@@ -11,7 +11,10 @@ from typing import Any
 from torsade import stopping
 from torsade.errors import counted
 
-__all__ = ["Interrupted", "Patience"]
+__all__ = ["STOPPING", "Interrupted", "Patience"]
+
+STOPPING = "stopping ... (Ctrl-C again to stop at once)"
+"""What is said when the first of them was heard."""
 
 
 class Patience:
@@ -52,12 +55,14 @@ class Patience:
 class Interrupted(KeyboardInterrupt):
     """Ctrl-C or SIGTERM during a run, after what there is was saved.
 
-    Attributes: `time` of the last frame [s], `frames` recorded, `part`, the folder that holds them, or None.
+    Attributes: `time` of the last frame [s], `frames` recorded, `part`, the folder that holds them, or None;
+    `earlier`, the folder of a run that was to be gone on with, which is as it was.
     """
 
-    def __init__(self, time: float, frames: int, part: Path | None) -> None:
+    def __init__(self, time: float, frames: int, part: Path | None, earlier: Path | None = None) -> None:
         self.time, self.frames, self.part = time, frames, part
         reached = f"at t = {time:.4g} s" if frames else "before the first frame"
         what = f"{counted(frames, 'frame')} {'is' if frames == 1 else 'are'} saved"
-        kept = "nothing is saved" if part is None else f"{what} in {str(part)!r}"
+        lost = "nothing is saved" if earlier is None else f"{str(earlier)!r} is as it was"
+        kept = lost if part is None else f"{what} in {str(part)!r}"
         super().__init__(f"interrupted {reached}; {kept}")

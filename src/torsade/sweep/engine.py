@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from torsade import places
 from torsade.errors import TorsadeError, counted, reason_of
 from torsade.protocols import stored
-from torsade.protocols.patience import Patience
+from torsade.protocols.patience import STOPPING, Patience
 from torsade.sweep import parts
 from torsade.sweep.design import MOST_POINTS, Point, Sweep
 from torsade.sweep.lanes import Lane, Local, Shared, cores
@@ -331,7 +331,7 @@ class _Teller:
         self._began = time.monotonic()
 
     def stopping(self) -> None:
-        self._tell(self._share, "stopping ... (Ctrl-C again to stop at once)")
+        self._tell(self._share, STOPPING)
 
     def now(self, killed: int, workers: int) -> None:
         """Say how many points are through, and how long the others may take."""
