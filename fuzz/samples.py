@@ -121,6 +121,7 @@ FIELDS = {
     "snap-twist": {"twist": "270 deg", "edges": 20, "seed": 3, "disorder": 0.05, "min_fragment": "30 mm"},
     "snap-quench": {"speed": "100 mm/s", "length": "24 cm", "rho": "1.5 g/cm^3", "approach": "10 ms"},
     "pendulum": {"turn": "45 deg", "mass": "20 g", "material": "nylon", "step": "1 us", "radius": 0.0007},
+    "battery": {"knot": "4_1", "twist": 1.0, "nodes": 60, "cut_at": 0.25, "charging": "0.3 s", "seed": 2},
 }
 
 

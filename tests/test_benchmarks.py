@@ -56,6 +56,7 @@ SCRIPTS = (
     "third_break",
     "movies",
     "block",
+    "ensembles",
 )
 
 

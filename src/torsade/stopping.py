@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import Any
 
-__all__ = ["by_sigterm", "exit_code", "heard", "ours", "sigterm_stops", "stop"]
+__all__ = ["STOPPING", "Patience", "by_sigterm", "exit_code", "heard", "ours", "sigterm_stops", "stop"]
+
+STOPPING = "stopping ... (Ctrl-C again to stop at once)"
+"""What is said when the first of them was heard."""
 
 _last = signal.SIGINT
 
@@ -52,3 +56,38 @@ def sigterm_stops() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
+class Patience:
+    """While it lasts, Ctrl-C and SIGTERM wait for the next call of `end`: no step or write is cut in half.
+
+    `told` is called at the first of them; a second one does not wait. Handlers of others are left in place.
+    """
+
+    def __init__(self, told: Callable[[], None]) -> None:
+        self._told = told
+        self._asked = False
+        self._before: dict[int, Any] = {}
+
+    def __enter__(self) -> Patience:
+        if threading.current_thread() is threading.main_thread():
+            for number in (signal.SIGINT, signal.SIGTERM):
+                if ours(number):
+                    self._before[number] = signal.signal(number, self._note)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
+
+    def _note(self, number: int, frame: object) -> None:
+        heard(number)
+        if self._asked:
+            raise KeyboardInterrupt
+        self._asked = True
+        self._told()
+
+    def end(self) -> None:
+        """Raise KeyboardInterrupt if a signal has come."""
+        if self._asked:
+            raise KeyboardInterrupt

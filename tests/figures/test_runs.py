@@ -147,7 +147,7 @@ def test_a_run_that_cannot_be_read_later_is_named(tmp_path, stored_reef):
 
 def interrupted(path, keep):
     """A run that is stopped at its first frame."""
-    from torsade.protocols.patience import Interrupted
+    from torsade.protocols.interrupted import Interrupted
 
     def stop(share, note):
         if share > 0.4:

@@ -246,7 +246,7 @@ def test_names_that_mean_something_else_now_are_not_mixed(part: Path) -> None:
 
 def test_the_first_ctrl_c_waits_and_the_second_does_not() -> None:
     """The first is told of and obeyed between two steps."""
-    from torsade.protocols.patience import Patience
+    from torsade.stopping import Patience
 
     told = []
     with Patience(lambda: told.append(1)) as patience:

@@ -32,6 +32,8 @@ def make(
     between = None if frames is None else _pair("--frames", frames, r"(-?\d{1,9}):(-?\d{1,9})", "0:80")
     if colour is not None and colour not in film.COLOURS:
         raise TorsadeError(f"--colour is {quoted(colour)}; give one of {', '.join(film.COLOURS)}")
+    if out is not None:
+        check_drawings(None, None, out)
     dataset = Result.open(result).dataset
     # A result may be the present folder, whose name only the system knows.
     named = Path(result) if Path(result).name else Path(result).resolve()

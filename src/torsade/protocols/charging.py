@@ -17,7 +17,7 @@ from torsade.arrays import Floats
 from torsade.assembly import Assembly
 from torsade.material import Material, Section
 from torsade.motion.overdamped import Motion
-from torsade.protocols.patience import STOPPING, Patience
+from torsade.stopping import STOPPING, Patience
 from torsade.topology.identify import identify_curves
 from torsade.topology.isotopy import thinned
 from torsade.topology.measures import writhe

@@ -14,9 +14,10 @@ from torsade import _compile, places
 from torsade.arrays import Floats
 from torsade.errors import TorsadeError
 from torsade.motion.moving import Motion, Outcome
-from torsade.protocols.patience import STOPPING, Interrupted, Patience
+from torsade.protocols.interrupted import Interrupted
 from torsade.recording import Recording
 from torsade.results import Result
+from torsade.stopping import STOPPING, Patience
 from torsade.variables import SAMPLE
 
 if TYPE_CHECKING:

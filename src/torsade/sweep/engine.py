@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from torsade import places
 from torsade.errors import TorsadeError, counted, reason_of
 from torsade.protocols import stored
-from torsade.protocols.patience import STOPPING, Patience
+from torsade.stopping import STOPPING, Patience
 from torsade.sweep import parts
 from torsade.sweep.design import MOST_POINTS, Point, Sweep
 from torsade.sweep.lanes import Lane, Local, Shared, cores

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade.errors import TorsadeError, counted
+from torsade.stopping import Patience
 from torsade.view.camera import SAMPLE, View, best_side, frame, knot_body
 from torsade.view.captions import Captions, Clock, Ring
 from torsade.view.cascade import THICKER
@@ -110,13 +111,19 @@ def movie(
         seconds * (1.0 - shares) / (end - begin),
         {"strain": STRAIN, "stress": STRESS}.get(colour),
     )
-    with encoder(path, shooting.view.size, fps) as add, Stage(shooting.view, samples=8) as stage:
+    # A signal that comes while others draw would be lost in what they call back.
+    with (
+        Patience(lambda: None) as patience,
+        encoder(path, shooting.view.size, fps) as add,
+        Stage(shooting.view, samples=8) as stage,
+    ):
         for k, shot in enumerate(shots):
             tell(k / pictures, f"picture {k + 1} of {pictures}")
             moment = moments.before_the_break() if shot.before else moments.at(shot.time)
             picture = shooting.picture(stage, moment)
             note = counted(len(moment.strands), "piece") if moments.breaking else ""
             add(captions.on(picture, shot.time - moments.origin, note, shooting.rings(moment, shot)))
+            patience.end()
     return path
 
 
