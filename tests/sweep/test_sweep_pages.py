@@ -7,6 +7,7 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -64,10 +65,13 @@ def test_the_query_shown_finds_fewer_pieces_of_a_twisted_rod(folder: Path) -> No
     assert found["pieces"][0] > found["pieces"][1]
 
 
-def test_the_example_runs(
+def test_the_examples_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    (example,) = blocks("python")
+    sweep, ensemble = blocks("python")
     monkeypatch.chdir(tmp_path)
-    exec(compile(example.replace('"count": 14', '"count": 3'), "sweeps.md", "exec"), {})
+    known: dict[str, Any] = {}
+    exec(compile(sweep.replace('"count": 14', '"count": 3'), "sweeps.md", "exec"), known)
     assert float(capsys.readouterr().out) > 0
+    exec(compile(ensemble.replace("0.2 s", "2 ms"), "sweeps.md", "exec"), known)
+    assert [result.spec["force"] for result in known["results"]] == [5.0, 10.0, 15.0, 20.0]
