@@ -16,12 +16,19 @@ from typing import Any
 from torsade import __version__, _compile
 from torsade.errors import TorsadeError
 
-__all__ = ["SAME_VERSIONS", "check_same", "machine", "present", "versions"]
+__all__ = ["SAME_VERSIONS", "check_same", "cores", "machine", "present", "versions"]
 
 LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "zarr")
 
 SAME_VERSIONS = ("torsade", "numba", "llvmlite", "numpy", "scipy")
 """A run goes on with these in the versions that it was begun with: others may round otherwise."""
+
+
+def cores() -> int:
+    """How many cores this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def present() -> dict[str, Any]:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from torsade import places, stopping
 from torsade.errors import TorsadeError, counted, reason_of
 from torsade.protocols import stored
+from torsade.provenance import cores
 from torsade.results import Result
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ def _run_missing(
     """Run what is not stored, telling what share of all is."""
     done = len(paths) - len(missing)
     tell(done / len(paths), _note(len(missing)))
-    for label in _run_all(missing, paths, fresh, workers or os.cpu_count() or 1):
+    for label in _run_all(missing, paths, fresh, workers or cores()):
         done += 1
         tell(done / len(paths), label)
 

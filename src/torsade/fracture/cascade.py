@@ -23,7 +23,7 @@ from torsade.fracture.criteria import criterion
 from torsade.material import Material, Section
 from torsade.motion import verlet
 from torsade.motion.inertial import Inertial
-from torsade.motion.moving import Outcome
+from torsade.motion.moving import Guided, Outcome
 from torsade.rod.elasticity import hinge_curvature
 
 NEVER = 2**62
@@ -118,7 +118,7 @@ def _above(length: float) -> float:
     return length * (1 + 1e-9)
 
 
-class Cascade:
+class Cascade(Guided[Inertial]):
     """A rod in inertial motion that breaks; drive it as any motion.
 
     Parameters
@@ -146,21 +146,6 @@ class Cascade:
         self._criterion = criterion(fracture.criterion)
         self._strength = fracture.strength.copy()
         self._bearing = self._bears()
-
-    @property
-    def time(self) -> float:
-        """Present time [s]."""
-        return self.motion.time
-
-    @property
-    def steps(self) -> int:
-        """Completed steps."""
-        return self.motion.steps
-
-    @property
-    def at_once(self) -> int:
-        """Steps that take about 0.2 s."""
-        return self.motion.at_once
 
     @property
     def lengths(self) -> Floats:

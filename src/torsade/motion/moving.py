@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from enum import Enum
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol, TypeVar
 
 from numpy.typing import NDArray
 
-__all__ = ["Motion", "Outcome", "check_saved"]
+__all__ = ["Guided", "Motion", "Outcome", "check_saved"]
 
 
 class Outcome(Enum):
@@ -64,3 +64,27 @@ def check_saved(saved: Mapping[str, NDArray[Any]], present: Mapping[str, NDArray
         same = (found.shape, found.dtype) == (array.shape, array.dtype)
         if not (same and found.flags.c_contiguous):
             raise ValueError(f"{name} is {found.dtype} of shape {found.shape}")
+
+
+Moved = TypeVar("Moved", bound=Motion)
+
+
+class Guided(Generic[Moved]):
+    """What does something to fibers on their way, `motion`, and keeps their clock."""
+
+    motion: Moved
+
+    @property
+    def time(self) -> float:
+        """Present time [s]."""
+        return self.motion.time
+
+    @property
+    def steps(self) -> int:
+        """Completed steps."""
+        return self.motion.steps
+
+    @property
+    def at_once(self) -> int:
+        """Steps that take about 0.2 s."""
+        return self.motion.at_once

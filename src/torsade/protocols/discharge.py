@@ -15,7 +15,7 @@ from torsade.arrays import Floats
 from torsade.assembly import Assembly, State, opened, parted
 from torsade.material import Material, Section
 from torsade.motion import ends
-from torsade.motion.moving import Outcome
+from torsade.motion.moving import Guided, Outcome
 from torsade.motion.overdamped import Energies, Motion, Stepping
 from torsade.rod.contact import Model
 from torsade.topology.fewest import fewest_crossings
@@ -73,7 +73,7 @@ def hinge_at(assembly: Assembly, share: float) -> int:
     return int(np.argmin(np.minimum(apart, assembly.fiber_length[0] - apart)))
 
 
-class Discharge:
+class Discharge(Guided[Motion]):
     """A closed fiber cut at a hinge; drive it as any motion. It is over when the battery is empty.
 
     The ends lie face to face at first and are not in contact, as they were not before: parts of the fiber
@@ -97,21 +97,6 @@ class Discharge:
         self._first = self.motion.energies().total
         self._across = _pairs_across(assembly, model.exclusion_length)
         self._apart = False
-
-    @property
-    def time(self) -> float:
-        """Present time [s]."""
-        return self.motion.time
-
-    @property
-    def steps(self) -> int:
-        """Completed steps."""
-        return self.motion.steps
-
-    @property
-    def at_once(self) -> int:
-        """Steps that take about 0.2 s."""
-        return self.motion.at_once
 
     def advance(self, until: float, max_steps: int = 2**62) -> Outcome:
         """Advance to the time until [s], in at most max_steps steps; OVER when the battery is empty.

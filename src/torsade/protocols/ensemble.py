@@ -6,13 +6,13 @@ between them, setting up and recording, takes turns. Runs share no state: each g
 
 from __future__ import annotations
 
-import os
 import threading
 from collections.abc import Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from typing import TYPE_CHECKING
 
 from torsade.errors import TorsadeError
+from torsade.provenance import cores
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Progress, Spec
@@ -77,7 +77,7 @@ def ensemble(
     stop = threading.Event()
     members = [_Member(spec, stop) for spec in specs]
     results = [members[0].run()]  # alone, so that kernels are compiled once
-    with ThreadPoolExecutor(threads or _cores(), THREAD) as pool:
+    with ThreadPoolExecutor(threads or cores(), THREAD) as pool:
         futures = [pool.submit(member.run) for member in members[1:]]
         try:
             _watch(futures, members, progress)
@@ -106,8 +106,3 @@ def _watch(futures: Sequence[Future[Result]], members: Sequence[_Member], progre
             through = len(members) - len(left)
             share = (1.0 + sum(m.share for m in members[1:])) / len(members)
             progress(share, f"{through} of {len(members)} runs")
-
-
-def _cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -16,10 +16,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from torsade import places
 from torsade.errors import TorsadeError, counted, reason_of
 from torsade.protocols import stored
+from torsade.provenance import cores
 from torsade.stopping import STOPPING, Patience
 from torsade.sweep import parts
 from torsade.sweep.design import MOST_POINTS, Point, Sweep
-from torsade.sweep.lanes import Lane, Local, Shared, cores
+from torsade.sweep.lanes import Lane, Local, Shared
 from torsade.sweep.query import ABOUT, POINTS, Catalogue, read_about
 from torsade.sweep.unit import Outcome, Unit
 from torsade.sweep.warm import warm_up

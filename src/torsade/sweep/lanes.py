@@ -8,6 +8,7 @@ import signal
 import sys
 import threading
 import time
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
@@ -18,7 +19,7 @@ from typing import Any
 
 from torsade.sweep.unit import Unit, stop_when
 
-__all__ = ["Lane", "Local", "Shared", "cores", "deaf", "pool"]
+__all__ = ["Lane", "Local", "Shared", "deaf", "pool"]
 
 ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 """Workers are as many as cores: each of them uses one."""
@@ -28,13 +29,6 @@ AHEAD = 2
 
 ASKED_EVERY = 5.0
 """Time between looks at how many workers there are [s]."""
-
-
-def cores() -> int:
-    """How many cores this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 class _Process(SpawnProcess):
@@ -99,7 +93,7 @@ def _end_with(sentinel: int) -> None:
     os._exit(1)
 
 
-class Lane:
+class Lane(ABC):
     """An executor and the batches that it has been given, in order.
 
     Attributes
@@ -125,16 +119,19 @@ class Lane:
         function, *arguments = task
         self.given.append((self._executor().submit(function, batch, *arguments), batch))
 
+    @abstractmethod
     def _executor(self) -> Executor:
-        raise NotImplementedError
+        """What runs its batches."""
 
     def remake(self) -> bool:
         """Begin anew after its worker was killed; False where that is not in our hands."""
         return False
 
+    @abstractmethod
     def abandon(self) -> None:
         """End what runs, if it is in our hands."""
 
+    @abstractmethod
     def close(self) -> None:
         """Let what it holds go."""
 
@@ -190,6 +187,9 @@ class Shared(Lane):
 
     def _executor(self) -> Executor:
         return self._given_executor
+
+    def abandon(self) -> None:
+        """Nothing: its workers are not ours to end."""
 
     def close(self) -> None:
         for future, _ in self.given:
