@@ -12,7 +12,6 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from typing import TYPE_CHECKING
 
 from torsade.errors import TorsadeError
-from torsade.provenance import cores
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Progress, Spec
@@ -70,6 +69,8 @@ def ensemble(
     KeyboardInterrupt
         On Ctrl-C; what runs gave is lost.
     """
+    from torsade.provenance import cores
+
     if threads is not None and threads < 1:
         raise TorsadeError(f"threads is {threads}; give a number of at least 1")
     if not specs:
