@@ -29,9 +29,12 @@ __all__ = ["SIX", "Suture", "tau_of"]
 SIX = ("3,-3", "5,-3", "3,-5", "5,-5", "3,3", "5,3")
 """Reef, surgeon's, reversed surgeon's, double, granny and surgeon's granny: two throws each."""
 
-USUAL_SKIN, USUAL_GAP = 20.0, 5.0  # radii
+USUAL_SKIN, USUAL_GAP = 10.0, 5.0  # radii
 THINNEST = 5.0  # radii
 MOST_TURNS = 15
+
+DEPTH = 1e-3
+"""How deep a fiber that is laid on skin lies in it, in diameters."""
 
 SAMPLED = ("gap", "drawn", "z_a", "z_b")
 RECORDED = (
@@ -93,13 +96,14 @@ class Suture(Pulled):
         "optomechanical", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
     )
     force: Annotated[Force, Positive] = Field(0.01, description="Force F_P on each end.")
-    angle: Annotated[Angle, Field(ge=0, le=math.pi / 2)] = Field(
-        0.0, description="Of the pull above the skin: 0 is apart, 90 deg away from the wound.",
-        examples=["30 deg"],
+    angle: Annotated[Angle, Field(ge=0, le=1.571)] = Field(
+        math.pi / 4,
+        description="Of the pull above the skin: 0 is apart along it, 90 deg away from the wound.",
+        examples=["45 deg"],
     )  # fmt: skip
     skin_radius: Annotated[Length, Positive] | None = Field(
-        None, description="Radius h_s of the cylinders of skin; by default 20 radii of the fiber.",
-        examples=["4 mm"],
+        None, description="Radius h_s of the cylinders of skin; by default 10 radii of the fiber.",
+        examples=["2 mm"],
     )  # fmt: skip
     gap: Annotated[Length, Positive] | None = Field(
         None, description="Gap of the wound at rest; by default 5 radii of the fiber.", examples=["1 mm"]
@@ -119,7 +123,16 @@ class Suture(Pulled):
     friction_speed: Annotated[Velocity, Positive] = Field(
         1e-6, description="Speed far below which dry friction holds."
     )
-    duration: Annotated[Time, Positive] = Field(4.0, description="How long to pull.")
+    duration: Annotated[Time, Positive] = Field(6.0, description="How long to pull.")
+    release: Annotated[Time, Field(ge=0)] = Field(
+        2.0, description="How long to go on with both ends let go, to see whether the knot holds."
+    )
+    frames: int = Field(
+        100,
+        ge=2,
+        le=1_000_000,
+        description="Frames to record after the one at t = 0, the end of the pull among them.",
+    )
 
     @field_validator("throws")
     @classmethod
@@ -150,6 +163,21 @@ class Suture(Pulled):
     def rest_gap(self) -> float:
         """Gap of the wound at rest [m]."""
         return USUAL_GAP * self.h if self.gap is None else self.gap
+
+    @property
+    def lasting(self) -> float:
+        return self.duration + self.release
+
+    def frame_times(self) -> Floats:
+        """Times of frames [s], evenly spaced over the pull and over what follows."""
+        import numpy as np
+
+        if self.release == 0:
+            return np.linspace(0.0, self.duration, self.frames + 1)
+        before = min(max(1, round(self.frames * self.duration / self.lasting)), self.frames - 1)
+        pulled = np.linspace(0.0, self.duration, before + 1)
+        let_go = np.linspace(self.duration, self.lasting, self.frames - before + 1)
+        return np.concatenate([pulled, let_go[1:]])
 
     @property
     def shape_name(self) -> str:
@@ -222,6 +250,9 @@ class Suture(Pulled):
             sample=wound.sample,
             catch=wound.catch,
             about={"knot": self.shape_name},
+            later=(self.duration,) if self.release > 0 else (),
+            begin=wound.begin,
+            frame_times=self.frame_times(),
         )
 
     @classmethod
@@ -251,7 +282,8 @@ class Wound:
     def __init__(self, spec: Suture, fiber: Assembly, motion: Motion) -> None:
         self.spec, self.fiber, self.motion = spec, fiber, motion
         self.n_nodes = len(fiber.node_length)
-        self.pull = motion.boundary.force[[0, self.n_nodes - 1]] / spec.force
+        self.load = motion.boundary.force
+        self.pull = self.load[[0, self.n_nodes - 1]] / spec.force
         self.ends = motion.state.x[[0, self.n_nodes - 1]].copy()
         self.rest_z = motion.state.x[self.n_nodes :, 2].copy()
 
@@ -299,9 +331,29 @@ class Wound:
             "skin_along": skin.along,
         }
 
+    def begin(self, time: float) -> None:
+        """Pull, or let go once the time to pull is over."""
+        # A stop may lie the billionth part of a run before the time that it stands for.
+        over = time * (1 + 1e-8) >= self.spec.duration
+        self.motion.boundary = self.motion.boundary._replace(force=0.0 * self.load if over else self.load)
+
     def catch(self, until: float) -> Outcome | None:
-        """Nothing holds a fiber that is pulled away from the wound until it lies on the skin."""
-        return None
+        """Lay a fiber that is pulled away from the wound on the skin, from below: until then nothing holds it."""
+        import numpy as np
+
+        from torsade.motion.moving import Outcome
+
+        x, edges = self.motion.state.x, self.fiber.edges
+        middle = x[edges].mean(axis=1)
+        reach = self.spec.h_s + self.spec.h * (1 - 2 * DEPTH)
+        across = middle[:, None, 0] - x[None, self.n_nodes :, 0]
+        deep = np.sqrt(np.maximum(reach**2 - across**2, 0.0))
+        way = x[None, self.n_nodes :, 1] - deep - middle[:, None, 1]
+        way = way[(np.abs(across) < reach) & (way >= 0)]
+        if not way.size:
+            return None
+        x[: self.n_nodes, 1] += way.min()
+        return Outcome.PAUSED
 
     def conclude(self, history: Mapping[str, Floats], loose_at: float | None) -> dict[str, Any]:
         return {}
