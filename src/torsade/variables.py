@@ -72,6 +72,8 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "energy_springs": (("time",), "J", "energy of the springs that hold the skin"),
     "spring_force": (("time", "side", "space"), "N", "force of the spring on each side of the skin"),
     "skin_force": (("time", "side", "space"), "N", "force of the fiber on each side of the skin"),
+    "skin_pressing": (("time", "side"), "N", "sum of the normal forces on each side of the skin"),
+    "skin_shearing": (("time", "side"), "N", "sum of the shear forces on each side of the skin, in size"),
     "skin_normal": (("time", "side", "edge"), "N/m", "force into the skin, per rest length of the fiber"),
     "skin_around": (("time", "side", "edge"), "N/m", "shear force on the skin around z, counterclockwise"),
     "skin_along": (("time", "side", "edge"), "N/m", "shear force on the skin along z"),

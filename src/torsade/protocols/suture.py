@@ -16,6 +16,8 @@ from torsade.protocols.pulled import COMMON, Experiment, Pulled, frame_of_fibers
 from torsade.units import Angle, Force, Length, Number, Stiffness, Time, Velocity
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from torsade.arrays import Floats
     from torsade.assembly import Assembly, State
     from torsade.centerline import Centerline
@@ -33,13 +35,16 @@ USUAL_SKIN, USUAL_GAP = 10.0, 5.0  # radii
 THINNEST = 5.0  # radii
 MOST_TURNS = 15
 
+LAST = 0.75
+"""Share of the pull from which the speed is taken at which the ends run out."""
+
 DEPTH = 1e-3
 """How deep a fiber that is laid on skin lies in it, in diameters."""
 
 SAMPLED = ("gap", "drawn", "z_a", "z_b")
 RECORDED = (
     "skin_position", "gap", "drawn", "slip_speed", "energy_skin", "energy_springs", "spring_force",
-    "skin_force", "skin_normal", "skin_around", "skin_along",
+    "skin_force", "skin_pressing", "skin_shearing", "skin_normal", "skin_around", "skin_along",
 )  # fmt: skip
 
 
@@ -125,7 +130,7 @@ class Suture(Pulled):
     )
     duration: Annotated[Time, Positive] = Field(6.0, description="How long to pull.")
     release: Annotated[Time, Field(ge=0)] = Field(
-        2.0, description="How long to go on with both ends let go, to see whether the knot holds."
+        0.0, description="How long to go on with both ends let go, to see whether the knot holds."
     )
     frames: int = Field(
         100,
@@ -255,25 +260,57 @@ class Suture(Pulled):
             frame_times=self.frame_times(),
         )
 
+    def last_pulled(self, time: ArrayLike) -> int:
+        """The frame at the end of the pull, or the last before, of those at given times [s]."""
+        import numpy as np
+
+        return max(0, int(np.searchsorted(time, self.duration * (1 + 1e-9), side="right")) - 1)
+
     @classmethod
     def report(cls, result: Result) -> dict[str, Any]:
-        """The numbers of a result under the keys of `--json`."""
+        """The numbers of a result under the keys of `--json`: those of the end of the pull, and histories.
+
+        z_displacement_m are e_z . (w - w_0) of both sides, and the size of their difference; z_peak_m the
+        largest they were on the way. skin_force_N are the sums of normal and of shear forces along the loop, of
+        their parts along z, and what the springs hold the sides with, for a and b each. slip_speed_m_per_s is
+        that at which each end runs out of the knot, in the mean of the last quarter of the pull.
+        """
         data, attrs = result.dataset, result.dataset.attrs
-        bottom, top = turns_of(result.spec["throws"])
-        z = (data["skin_position"][-1, :, 2] - data["skin_position"][0, :, 2]).values.tolist()
+        spec = cls(**result.spec)
+        bottom, top = spec.turns
+        last = spec.last_pulled(data["time"])
+        end, z = data.isel(time=last), (data["skin_position"] - data["skin_position"][0])[:, :, 2].values
         return {
             "protocol": "suture",
-            "throws": result.spec["throws"],
-            "preset": result.spec["preset"],
+            "throws": spec.throws,
+            "preset": spec.preset,
             "crossings": abs(bottom) + abs(top),
             "writhe": bottom + top,
             "tau": tau_of(bottom, top),
-            "z_displacement_m": {"a": z[0], "b": z[1], "relative": abs(z[0] - z[1])},
-            "gap_m": float(data["gap"][-1]),
-            "slip_speed_m_per_s": float(data["slip_speed"][-1]),
+            "z_displacement_m": _sides(z[last]),
+            "z_peak_m": attrs.get("z_peak_m"),
+            "gap_m": float(end["gap"]),
+            "closed_at_s": attrs.get("closed_at_s"),
+            "skin_force_N": {
+                "normal": end["skin_pressing"].values.tolist(),
+                "shear": end["skin_shearing"].values.tolist(),
+                "along_z": end["skin_force"][:, 2].values.tolist(),
+                "spring": end["spring_force"].values.tolist(),
+            },
+            "slip_speed_m_per_s": attrs.get("slip_speed_m_per_s"),
+            "c_f": attrs.get("c_f"),
+            "gap_after_release_m": float(data["gap"][-1]) if spec.release > 0 else None,
+            "times_s": data["time"].values.tolist(),
+            "gaps_m": data["gap"].values.tolist(),
+            "z_m": {"a": z[:, 0].tolist(), "b": z[:, 1].tolist()},
             "steps": attrs["steps"],
             "wall_s": attrs["wall_s"],
         }
+
+
+def _sides(z: Floats) -> dict[str, float]:
+    """Displacements of both sides along z [m], and the size of their difference."""
+    return {"a": float(z[0]), "b": float(z[1]), "relative": abs(float(z[0] - z[1]))}
 
 
 class Wound:
@@ -326,6 +363,8 @@ class Wound:
             "energy_springs": skin.stored,
             "spring_force": skin.spring,
             "skin_force": skin.total,
+            "skin_pressing": skin.normal @ self.fiber.rest_length,
+            "skin_shearing": np.hypot(skin.around, skin.along) @ self.fiber.rest_length,
             "skin_normal": skin.normal,
             "skin_around": skin.around,
             "skin_along": skin.along,
@@ -356,4 +395,28 @@ class Wound:
         return Outcome.PAUSED
 
     def conclude(self, history: Mapping[str, Floats], loose_at: float | None) -> dict[str, Any]:
-        return {}
+        """Largest displacements along z on the way, when the wound closed, and how fast the ends ran out."""
+        import numpy as np
+
+        spec = self.spec
+        time, z = history["time"], np.stack([history["z_a"], history["z_b"]], axis=1)
+        relative = np.abs(z[:, 0] - z[:, 1])
+        numbers: dict[str, Any] = {
+            "z_peak_m": {
+                "a": float(z[np.argmax(np.abs(z[:, 0])), 0]),
+                "b": float(z[np.argmax(np.abs(z[:, 1])), 1]),
+                "relative": float(relative.max()),
+            }
+        }
+        shut = np.flatnonzero(history["gap"] <= 0)
+        if shut.size:
+            numbers["closed_at_s"] = float(time[shut[0]])
+        ends = np.minimum(float(time[-1]), spec.duration) * np.array([LAST, 1.0])
+        first, last = np.interp(ends, time, history["drawn"])
+        if ends[1] > ends[0]:
+            speed = float(0.5 * (last - first) / (ends[1] - ends[0]))
+            numbers["slip_speed_m_per_s"] = speed
+            if speed > 0:
+                unit = spec.force * 2 * spec.h / (spec.fiber_material.eta * spec.section.A)
+                numbers["c_f"] = unit / speed
+        return numbers
