@@ -102,9 +102,9 @@ class Suture(Pulled):
     )
     force: Annotated[Force, Positive] = Field(0.01, description="Force F_P on each end.")
     angle: Annotated[Angle, Field(ge=0, le=1.571)] = Field(
-        math.pi / 4,
+        math.pi / 6,
         description="Of the pull above the skin: 0 is apart along it, 90 deg away from the wound.",
-        examples=["45 deg"],
+        examples=["30 deg"],
     )  # fmt: skip
     skin_radius: Annotated[Length, Positive] | None = Field(
         None, description="Radius h_s of the cylinders of skin; by default 10 radii of the fiber.",
@@ -128,7 +128,7 @@ class Suture(Pulled):
     friction_speed: Annotated[Velocity, Positive] = Field(
         1e-6, description="Speed far below which dry friction holds."
     )
-    duration: Annotated[Time, Positive] = Field(6.0, description="How long to pull.")
+    duration: Annotated[Time, Positive] = Field(10.0, description="How long to pull.")
     release: Annotated[Time, Field(ge=0)] = Field(
         0.0, description="How long to go on with both ends let go, to see whether the knot holds."
     )
