@@ -6,6 +6,7 @@ the suture, what it does to the skin, and what restores the skin to where it was
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -27,11 +28,11 @@ if TYPE_CHECKING:
 __all__ = ["FIGURE"]
 
 THROWS = "5,-3"
-STRAND, PULL, PRESS, SPRING = "#e0483f", "#262a2e", "#2f6fa8", "#3f8f5f"
-SHOWN = 0.75
+STRAND, EDGE, PULL, PRESS, SPRING = "#3273ab", "#1d466b", "#262a2e", "#c9543f", "#2f7d52"
+SHOWN = 0.5
 """Share of the gap at rest that is left in panel B: a wound that is closing."""
 
-PER_NEWTON = 0.11
+PER_NEWTON = 0.17
 """Length of arrows [m/N]."""
 
 
@@ -57,6 +58,7 @@ def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Cho
         direction=FROM_ABOVE,
         skin=skin_at(data, -1),
         fill=0.8,
+        fade=0.05,
     )
     with require("matplotlib").rc_context(panels.STYLE):
         figure = panels.new_figure(7.4, 3.3)
@@ -82,14 +84,20 @@ def _along_skin(axis: Any, data: Any, radius: float) -> None:
     for centre, was in zip(w, rest, strict=True):
         body = {"facecolor": COLOUR, "edgecolor": "#c49a86", "linewidth": 0.8, "zorder": 1}
         axis.add_patch(patches.Circle(unit * centre[:2], unit * skin.radius, **body))
-        old = {"fill": False, "edgecolor": panels.MUTED, "linewidth": 0.8, "linestyle": (0, (4, 2)), "zorder": 2}
+        old = {
+            "fill": False,
+            "edgecolor": panels.MUTED,
+            "linewidth": 0.8,
+            "linestyle": (0, (4, 2)),
+            "zorder": 2,
+        }
         axis.add_patch(patches.Circle(unit * was[:2], unit * skin.radius, **old))
     x = unit * np.asarray(data["position"].values[frame], np.float64)
     h = unit * radius
     across = 1.35 * (float(w[1, 0] - w[0, 0]) + 2 * skin.radius) * unit / 2
     bottom, top = unit * (w[:, 1].min() - skin.radius) - 4 * h, float(x[:, 1][np.abs(x[:, 0]) < across].max())
-    axis.set_xlim(-1.25 * across, 1.25 * across)
-    axis.set_ylim(bottom, top + 4 * h)
+    axis.set_xlim(-1.7 * across, 1.7 * across)
+    axis.set_ylim(bottom, top + 9 * h)
     axis.set_aspect("equal")
     axis.axis("off")
     _strand(axis, x, h)
@@ -105,7 +113,7 @@ def _strand(axis: Any, x: Floats, h: float) -> None:
         along = along[:2] / max(float(np.linalg.norm(along[:2])), 1e-12)
         side = np.array([-along[1], along[0]])
         a, b = x[k, :2] - 0.6 * h * along, x[k + 1, :2] + 0.6 * h * along
-        for width, colour in ((h, "#8f2a24"), (0.78 * h, STRAND)):
+        for width, colour in ((h, EDGE), (0.74 * h, STRAND)):
             corners = [a + width * side, b + width * side, b - width * side, a - width * side]
             part = paths.Path([*corners, corners[0]])
             axis.add_patch(patches.PathPatch(part, facecolor=colour, edgecolor="none", zorder=3))
@@ -113,28 +121,30 @@ def _strand(axis: Any, x: Floats, h: float) -> None:
 
 def _forces(axis: Any, data: Any, frame: int, unit: float, across: float, x: Floats) -> None:
     """Arrows of the pull, of what presses each side, and of the springs."""
-    import json
-
     pull = float(json.loads(data.attrs["spec"])["force"])
     for half in (x[: len(x) // 2], x[len(x) // 2 :][::-1]):
         inside = np.flatnonzero(np.abs(half[:, 0]) < across)
         way = half[0, :2] - half[min(12, len(half) - 1), :2]
         way = way / np.linalg.norm(way)
         start = half[inside[0], :2] if len(inside) else half[0, :2]
-        _arrow(axis, start, start + unit * PER_NEWTON * pull * way, PULL, "$F_P$", way)
+        _arrow(axis, start, start + unit * PER_NEWTON * pull * way, PULL, "$F_P$")
     w = unit * np.asarray(data["skin_position"].values[frame], np.float64)
     for kind, colour, name, lift in (("skin", PRESS, "$F_C$", 0.35), ("spring", SPRING, "$F_S$", -0.35)):
         for centre, force in zip(w, np.asarray(data[f"{kind}_force"].values[frame]), strict=True):
             step = unit * PER_NEWTON * force[:2]
-            away = force[:2] / max(float(np.linalg.norm(force[:2])), 1e-30)
-            start = centre[:2] + [0.0, lift]
-            _arrow(axis, start, start + step, colour, name, away)
+            start = centre[:2] + np.array([0.0, lift])
+            _arrow(axis, start, start + step, colour, name)
 
 
-def _arrow(axis: Any, a: Floats, b: Floats, colour: str, text: str, away: Floats) -> None:
-    style = {"arrowstyle": "-|>", "linewidth": 1.4, "color": colour, "mutation_scale": 9, "shrinkA": 0, "shrinkB": 0}
-    axis.annotate("", b, a, arrowprops=style, zorder=5)
-    axis.annotate(text, b, xytext=9 * away, textcoords="offset points", ha="center", va="center", color=colour)
+def _arrow(axis: Any, a: Floats, b: Floats, colour: str, text: str) -> None:
+    """An arrow from a to b, with its name beside its middle, outwards."""
+    style = {"arrowstyle": "-|>", "linewidth": 1.4, "color": colour, "mutation_scale": 9}
+    axis.annotate("", b, a, arrowprops={**style, "shrinkA": 0, "shrinkB": 0}, annotation_clip=False)
+    along = (b - a) / max(float(np.linalg.norm(b - a)), 1e-30)
+    side = np.array([-along[1], along[0]])
+    side *= 1.0 if side[0] * a[0] > 0 else -1.0
+    offset = {"xytext": 9 * side, "textcoords": "offset points", "color": colour, "fontsize": 8}
+    axis.annotate(text, 0.5 * (a + b), ha="center", va="center", annotation_clip=False, **offset)
 
 
 FIGURE = Figure("6-1", "The suturing system", runs, measure, draw)

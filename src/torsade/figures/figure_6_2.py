@@ -68,20 +68,22 @@ def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Cho
             axis.axis("off")
             b, t = throws.split(",")
             writhe = int(b) + int(t)
-            shown = throws.replace("-", "−").replace(",", ", ")
-            axis.set_title(f"{name} ({shown})   Wr = {writhe:+d}".replace("-", "−"), loc="center", fontsize=7.5)
+            shown = f"{name} ({throws.replace(',', ', ')})   Wr = {writhe:{'+d' if writhe else 'd'}}"
+            axis.set_title(shown.replace("-", "−"), loc="center", fontsize=7.5)
         panels.letter(axes[0][0], "A")
         below = lower.subplots(1, len(FRICTIONS), sharey=True)
         for axis, friction, name in zip(below, FRICTIONS, "BC", strict=True):
             _scatter(axis, tables[""], friction)
-            panels.letter(axis, name, -0.12 if name == "B" else 0.0)
+            panels.letter(axis, name, -0.12 if name == "B" else -0.04)
+        highest = max(abs(float(z or 0.0)) for z in tables[""].column("z_largest_a_m"))
+        below[0].set_ylim(0.0, 1.25e6 * highest)
         below[0].set_ylabel("|z| of each side (µm)")
         panels.save(figure, path)
 
 
 def _scatter(axis: Any, found: Table, friction: float) -> None:
     """Displacements against the writhe, at the end and at most."""
-    rows = [dict(zip(found.columns, row, strict=True)) for row in found.rows]
+    rows: list[dict[str, Any]] = [dict(zip(found.columns, row, strict=True)) for row in found.rows]
     for row in rows:
         if row["friction"] != friction:
             continue
@@ -91,16 +93,14 @@ def _scatter(axis: Any, found: Table, friction: float) -> None:
         axis.plot([x, x], [end, most], color=colour, linewidth=0.8, alpha=0.6)
         axis.plot(x, most, "o", color=colour, markerfacecolor="white", markersize=4)
         axis.plot(x, end, "o", color=colour, markersize=5)
-        left = x > 7
+        crowded = abs(row["Wr"]) < 3
         axis.annotate(
-            row["knot"], (x, max(end, most)), xytext=(4 if left else 0, 5), textcoords="offset points",
-            ha="right" if left else "left", va="bottom", rotation=0 if abs(row["Wr"]) > 3 else 55, fontsize=6.5,
+            row["knot"], (x, max(end, most)), xytext=(0, 5), textcoords="offset points",
+            ha="left" if crowded else "center", va="bottom", rotation=50 if crowded else 0, fontsize=6.5,
             color=colour, rotation_mode="anchor",
         )  # fmt: skip
     axis.set_xlabel("|Wr|")
-    axis.set_xlim(-0.8, 8.6)
-    axis.margins(y=0.25)
-    axis.set_ylim(bottom=0.0)
+    axis.set_xlim(-0.8, 9.4)
     axis.set_title(TITLES[friction], fontsize=8)
     points = [("at the end", "o", panels.MUTED), ("at most", "o", "white")]
     for text, marker, face in points:

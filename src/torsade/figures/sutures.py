@@ -58,8 +58,8 @@ def table(results: Mapping[str, Result]) -> Table:
             z, most, force = r["z_displacement_m"], r["z_peak_m"], r["skin_force_N"]
             rows.append(
                 (
-                    throws, name, friction, r["crossings"], r["writhe"], r["tau"], z["a"], z["b"], z["relative"],
-                    most["a"], most["relative"], r["gap_m"], force["normal"][0], force["shear"][0],
+                    throws, name, friction, r["crossings"], r["writhe"], r["tau"], z["a"], z["b"],
+                    z["relative"], most["a"], most["relative"], r["gap_m"], force["normal"][0], force["shear"][0],
                     r["slip_speed_m_per_s"], r["c_f"],
                 )
             )  # fmt: skip

@@ -271,9 +271,9 @@ class Suture(Pulled):
         """The numbers of a result under the keys of `--json`: those of the end of the pull, and histories.
 
         z_displacement_m are e_z . (w - w_0) of both sides, and the size of their difference; z_peak_m the
-        largest they were on the way. skin_force_N are the sums of normal and of shear forces along the loop, of
-        their parts along z, and what the springs hold the sides with, for a and b each. slip_speed_m_per_s is
-        that at which each end runs out of the knot, in the mean of the last quarter of the pull.
+        largest they were on the way. skin_force_N are the sums of normal and of shear forces along the loop,
+        of their parts along z, and what the springs hold the sides with, for a and b each. slip_speed_m_per_s
+        is that at which each end runs out of the knot, in the mean of the last quarter of the pull.
         """
         data, attrs = result.dataset, result.dataset.attrs
         spec = cls(**result.spec)

@@ -132,7 +132,7 @@ def _part_cylinders(m: Model, radius: float, i: Index, j: Index, x: Floats, forc
     dx = x[i, 0] - x[j, 0]
     dy = x[i, 1] - x[j, 1]
     D = math.sqrt(dx * dx + dy * dy)
-    if D < 2.0 * radius:
+    if 2.0 * radius > D:
         N = m.diameter * 2.0 * radius * contact_pressure(m, D - 2.0 * radius + m.diameter)
         force[i, 0] += N * dx / D
         force[i, 1] += N * dy / D
