@@ -16,7 +16,8 @@ import numpy as np
 from torsade.arrays import Floats
 from torsade.figures import panels
 from torsade.figures.base import Choice, Figure, Table
-from torsade.figures.sutures import FRICTIONS, KNOTS, label, suture, table
+from torsade.figures.sutures import FRICTIONS, label, suture, table
+from torsade.protocols.suture import SIX, Suture
 from torsade.view._extra import require
 from torsade.view.scene import picture
 
@@ -34,7 +35,7 @@ ASIDE = {"5,-3": 0.35, "3,-5": -0.35, "5,-5": 0.35}
 
 def runs(choice: Choice) -> Mapping[str, Spec]:
     """The six sutures, with and without dry friction."""
-    return {label(t, f): suture(t, f, choice) for t in KNOTS for f in FRICTIONS}
+    return {label(t, f): suture(t, f, choice) for t in SIX for f in FRICTIONS}
 
 
 def measure(results: Mapping[str, Result], choice: Choice) -> Mapping[str, Table]:
@@ -44,8 +45,6 @@ def measure(results: Mapping[str, Result], choice: Choice) -> Mapping[str, Table
 
 def _throws(throws: str) -> Floats:
     """Picture of the throws alone, the left and the right half of the strand in two colours."""
-    from torsade.protocols.suture import Suture
-
     spec = Suture(throws=throws)
     x, _, (first, last) = spec.stitch()
     halves = [x[: first + 1], x[last:]]
@@ -63,7 +62,7 @@ def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Cho
         figure = panels.new_figure(7.4, 4.9)
         upper, lower = figure.subfigures(2, 1, height_ratios=(2.2, 2.4))
         axes = upper.subplots(2, 3)
-        for axis, (throws, name) in zip(axes.ravel(), KNOTS.items(), strict=True):
+        for axis, (throws, name) in zip(axes.ravel(), SIX.items(), strict=True):
             axis.imshow(_throws(throws), interpolation="antialiased")
             axis.axis("off")
             b, t = throws.split(",")

@@ -6,22 +6,12 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from torsade.figures.base import Choice, Table
+from torsade.protocols.suture import SIX, Suture
 
 if TYPE_CHECKING:
-    from torsade.protocols.suture import Suture
     from torsade.results import Result
 
-__all__ = ["FRICTIONS", "KNOTS", "label", "suture", "table"]
-
-KNOTS: Mapping[str, str] = {
-    "3,-3": "reef",
-    "5,-3": "surgeon's",
-    "3,-5": "reversed surgeon's",
-    "5,-5": "double",
-    "3,3": "granny",
-    "5,3": "surgeon's granny",
-}
-"""Names of the six sutures, by their throws."""
+__all__ = ["FRICTIONS", "label", "suture", "table"]
 
 FRICTIONS = (0.0, 0.3)
 """Coefficients of dry friction on skin: the thesis's model has none."""
@@ -34,22 +24,18 @@ def label(throws: str, friction: float) -> str:
 
 def suture(throws: str, friction: float, choice: Choice) -> Suture:
     """A suture as figures show it."""
-    from torsade.protocols.suture import Suture
-
     options: dict[str, Any] = {"duration": 0.2, "frames": 10} if choice.quick else {}
     return Suture(throws=throws, friction=friction, **options)
 
 
 def table(results: Mapping[str, Result]) -> Table:
     """What every suture does to the skin, at the end of the pull and where z was largest."""
-    from torsade.protocols.suture import Suture
-
     columns = (
         "throws", "knot", "friction", "N", "Wr", "tau", "z_a_m", "z_b_m", "z_relative_m", "z_largest_a_m",
         "z_largest_relative_m", "gap_m", "normal_a_N", "shear_a_N", "slip_speed_m_per_s", "c_f",
     )  # fmt: skip
     rows: list[tuple[Any, ...]] = []
-    for throws, name in KNOTS.items():
+    for throws, name in SIX.items():
         for friction in FRICTIONS:
             found = results.get(label(throws, friction))
             if found is None:
@@ -59,7 +45,8 @@ def table(results: Mapping[str, Result]) -> Table:
             rows.append(
                 (
                     throws, name, friction, r["crossings"], r["writhe"], r["tau"], z["a"], z["b"],
-                    z["relative"], most["a"], most["relative"], r["gap_m"], force["normal"][0], force["shear"][0],
+                    z["relative"], most["a"], most["relative"], r["gap_m"], force["normal"][0],
+                    force["shear"][0],
                     r["slip_speed_m_per_s"], r["c_f"],
                 )
             )  # fmt: skip
