@@ -30,7 +30,7 @@ def test_clear_smooth_and_as_fine_as_asked(throws):
 
 @pytest.mark.parametrize("throws", PAIRS)
 def test_the_throws_are_those_of_the_diagram(throws):
-    """Cut at the sides of the loop it is the tangle of the suture: crossings and writhe are those of (b, t)."""
+    """Cut at the sides of the loop it is the tangle: crossings and writhe are those of (b, t)."""
     x, _, (first, last) = stitch(*throws, H, H_S, GAP)
     read = project([x[: first + 1][::-1], x[last:]], [False, False]).diagram
     assert (read.n_crossings, read.writhe) == (abs(throws[0]) + abs(throws[1]), sum(throws))
