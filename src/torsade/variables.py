@@ -64,6 +64,8 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "sample_energy": (("sample",), "J", "stored energy at the times of samples"),
     "sample_dissipation": (("sample",), "J", "energy lost to drag until the times of samples"),
     "sample_fewest_crossings": (("sample",), "1", "fewest crossings at the times of samples"),
+    "sample_non_planarity": (("sample",), "1", "smallest over largest radius of gyration, at those times"),
+    "sample_torsion": (("sample",), "1", "mean |torsion| where the fiber is bent, times the radius, then"),
     **{
         f"charge_{name}": ((_CHARGE, *more), unit, f"{meaning}, while the fiber was closed")
         for name, more, unit, meaning in (
