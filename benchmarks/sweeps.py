@@ -194,10 +194,16 @@ def on_dask(design: Path, folder: Path, points: int) -> dict[str, Any]:
 
 def alike(one: Path, other: Path) -> dict[str, int]:
     """How many points two sweeps share, and of how many everything but times is the same to the last bit."""
-    sql = "SELECT key, * EXCLUDE (key, point, wall_s) FROM runs WHERE status = 'done'"
-    mine, theirs = ({row[0]: row[1:] for row in Catalogue(folder).query(sql).rows} for folder in (one, other))
+    mine, theirs = (_done(Catalogue(folder)) for folder in (one, other))
     shared = mine.keys() & theirs.keys()
     return {"shared": len(shared), "the_same": sum(mine[key] == theirs[key] for key in shared)}
+
+
+def _done(catalogue: Catalogue) -> dict[str, dict[str, Any]]:
+    """What is done, by key: columns by name, since their order is that in which they were first filled."""
+    found = catalogue.query("SELECT * EXCLUDE (point, wall_s) FROM runs WHERE status = 'done'")
+    rows = [dict(zip(found.columns, row, strict=True)) for row in found.rows]
+    return {row.pop("key"): row for row in rows}
 
 
 def overhead(folder: Path, duration: str, count: int) -> dict[str, Any]:

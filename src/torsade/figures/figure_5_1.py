@@ -8,18 +8,16 @@ the cut.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from torsade.arrays import Floats
 from torsade.figures import panels
 from torsade.figures.base import Choice, Figure, Table
 from torsade.figures.battery_map import KINDS, KNOTS
 from torsade.view._extra import require
-from torsade.view.battery import TOP, Shape, density_bar, shapes
+from torsade.view.battery import TOP, Shape, density_bar, name_knots, shapes
 from torsade.view.plots import ENERGIES
 from torsade.view.scene import picture
 
@@ -108,7 +106,7 @@ def _draw_sequence(figure: Any, data: Any) -> None:
     for axis in axes:
         axis.axis("off")
     for axis, shape, title in zip(axes, found, titles, strict=False):
-        shape.draw(axis, float(data.attrs["radius"]), top, f"{shape.knot}\n{title}", (416, 448))
+        shape.draw(axis, float(data.attrs["radius"]), top, f"{shape.called}\n{title}", (416, 448))
         axis.title.set_fontsize(6.5)
     density_bar(figure, list(axes), top, shrink=0.75, pad=0.01)
     panels.letter(axes[0], "B")
@@ -135,27 +133,15 @@ def _draw_energies(figure: Any, table: Table) -> None:
     axes[1, 0].plot(time[~cut], writhe[~cut], color=panels.MUTED, label="writhe")
     axes[1, 1].plot(time[cut], writhe[cut], color=panels.MUTED, label="writhe")
     axes[1, 1].step(time[cut], crossings[cut], where="post", color=panels.INK, label="crossings")
-    _name_knots(axes[:, 1], time[cut], [str(name) for name, after in zip(names, cut, strict=True) if after])
+    name_knots(axes[:, 1], time[cut], [str(name) for name, after in zip(names, cut, strict=True) if after])
+    axes[1, 1].set_ylim(-0.6, float(np.nanmax(crossings)) + 2.6)
     axes[0, 0].set_ylabel("energy ($E_0$)")
-    axes[1, 0].set_xlabel("time before the cut ($T_0$)")
+    axes[1, 0].set_xlabel("time since it was twisted ($T_0$)")
     axes[1, 1].set_xlabel("time after the cut ($T_0$)")
     axes[0, 1].legend(frameon=False, ncols=5, fontsize=6.5, loc="lower right", bbox_to_anchor=(1.0, 1.0))
-    axes[1, 1].legend(frameon=False, fontsize=6.5, loc="upper right")
+    axes[1, 1].legend(frameon=False, fontsize=6.5, loc="center left", bbox_to_anchor=(0.0, 0.25))
     figure.align_ylabels(list(axes[:, 0]))
     panels.letter(axes[0, 0], "C", -0.16)
-
-
-def _name_knots(axes: Any, time: Floats, names: list[str]) -> None:
-    """Lines where the knot becomes another, and its name."""
-    begins = [k for k, name in enumerate(names) if k == 0 or name != names[k - 1]]
-    for k, _ in pairwise([*begins, len(names)]):
-        for axis in axes:
-            if k:
-                axis.axvline(time[k], color=panels.MUTED, linewidth=0.6, linestyle=(0, (2, 2)))
-        axes[0].annotate(
-            names[k], (time[k], 0.03), xycoords=("data", "axes fraction"), xytext=(3, 0),
-            textcoords="offset points", fontsize=6.5, color=panels.INK,
-        )  # fmt: skip
 
 
 FIGURE = Figure("5-1", "Batteries: knots, charging, cut and discharge", runs, measure, draw)

@@ -83,20 +83,19 @@ def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Cho
 def _draw_shapes(figure: Any, results: Mapping[str, Result]) -> None:
     """Panel A, a row for every battery, each with its own colour bar."""
     axes = figure.subplots(len(PICTURED), 1 + len(SHARES), squeeze=False)
-    for row, (knot, twist) in zip(axes, PICTURED, strict=True):
+    for k, (row, (knot, twist)) in enumerate(zip(axes, PICTURED, strict=True)):
         data = results[_label(knot, twist)].dataset
         found = list(shapes(data, SHARES))
         top = float(np.quantile(found[0].density, TOP))
         for axis in row:
             axis.axis("off")
         for axis, shape in zip(row, found, strict=False):
-            left = (
-                rf"$h\theta' = {twist:g}$"
-                if shape.closed
-                else f"{100 * shape.left:.2g} %, {shape.time:.2g} $T_0$"
-            )
-            shape.draw(axis, float(data.attrs["radius"]), top, f"{shape.knot}, {left}", (576, 448))
-        density_bar(figure, list(row), top, shrink=0.8, pad=0.01)
+            left = f"{100 * shape.left:.2g} % after {shape.time:.2g} $T_0$"
+            note = rf"$h\theta' = {twist:g}$" if shape.closed else left
+            shape.draw(axis, float(data.attrs["radius"]), top, f"{shape.called}, {note}", (576, 448))
+        bar = density_bar(figure, list(row), top, shrink=0.8, pad=0.01)
+        if k != len(PICTURED) // 2:
+            bar.set_label("")
     panels.letter(axes[0][0], "A")
 
 
@@ -125,7 +124,7 @@ def _draw_energies(axes: Any, table: Table) -> None:
     axes.set(
         xlabel=r"twist density $h\theta'$", ylabel="energy at the cut ($E_0$)", yscale="log", ylim=(2e-2, 8)
     )
-    axes.legend(frameon=False, fontsize=6.5, ncols=2, loc="upper center")
+    axes.legend(frameon=False, fontsize=6.5, loc="lower left")
 
 
 def _draw_discharge(axes: Any, table: Table) -> None:
@@ -161,6 +160,11 @@ def _draw_map(figure: Any, axes: Any, table: Table) -> None:
     axes.tick_params(length=0)
     axes.set(xlabel=r"twist density $h\theta'$")
     bar = figure.colorbar(mesh, ax=axes, pad=0.02, aspect=30)
+    ticks = require("matplotlib.ticker")
+    for place in ("major", "minor"):
+        shown = (1.0,) if place == "major" else (2.0, 5.0)
+        getattr(bar.ax.yaxis, f"set_{place}_locator")(ticks.LogLocator(subs=shown))
+        getattr(bar.ax.yaxis, f"set_{place}_formatter")(ticks.FuncFormatter(lambda x, _: f"{x:g}"))
     bar.set_label("time to 10 % ($T_0$)")
     bar.outline.set_visible(False)
 
@@ -171,7 +175,7 @@ def _draw_times(axes: Any, table: Table) -> None:
         axes.plot(twists, values, **_style(knot))
     axes.plot(twists, np.nanmedian(times, axis=0), color=panels.INK, linewidth=1.6, label="median", zorder=4)
     axes.set(xlabel=r"twist density $h\theta'$", ylabel="time to 10 % ($T_0$)", yscale="log")
-    axes.legend(frameon=False, fontsize=6.5, ncols=2, loc="upper right")
+    axes.legend(frameon=False, fontsize=6.5, loc="upper left")
 
 
 FIGURE = Figure(

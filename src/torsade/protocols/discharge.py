@@ -19,7 +19,7 @@ from torsade.motion.moving import Guided, Outcome
 from torsade.motion.overdamped import Energies, Motion, Stepping
 from torsade.rod.contact import Model
 from torsade.topology.fewest import fewest_crossings
-from torsade.topology.identify import identify_open
+from torsade.topology.identify import name_open
 from torsade.topology.measures import average_crossing_number, writhe
 from torsade.topology.names import UNKNOT
 
@@ -61,6 +61,9 @@ EMPTY = 1e-3
 
 DIRECTIONS = 12
 """In which the ends are led away when the open strand is identified."""
+
+HARDLY = 0.1
+"""Motion of all nodes that leaves a knot its name, from where it was named on [radii]."""
 
 DRAWN_IN = 1e-4
 """How far ends are drawn in where the shape of the strand is looked at, in edges."""
@@ -106,6 +109,7 @@ class Discharge(Guided[Motion]):
         self._first = self.motion.energies().total
         self._across = _pairs_across(assembly, model.exclusion_length)
         self._apart = False
+        self._named = np.zeros_like(cut.x)
 
     def advance(self, until: float, max_steps: int = 2**62) -> Outcome:
         """Advance to the time until [s], in at most max_steps steps; OVER when the battery is empty.
@@ -142,8 +146,7 @@ class Discharge(Guided[Motion]):
         assembly, state, energies = motion.assembly, motion.state, self.energies()
         x = _drawn_in(state.x)
         fewest = fewest_crossings(x, False)
-        name = identify_open(x, DIRECTIONS).name if fewest else UNKNOT
-        self.knots.append((motion.time, name))
+        self.knots.append((motion.time, self._name(x, fewest)))
         return {
             "time": motion.time,
             "energy_stretch": energies.stretch,
@@ -161,6 +164,14 @@ class Discharge(Guided[Motion]):
             "log_strain": observables.log_strain(assembly, state, radius),
             "energy_density": observables.energy_density(assembly, state, self._material, self._section),
         }
+
+    def _name(self, x: Floats, fewest: int) -> str:
+        """Which knot the strand (n, 3) is; what has hardly moved since it was named is not named anew."""
+        moved = np.linalg.norm(x - self._named, axis=1).max() if self.knots else np.inf
+        if fewest and moved < HARDLY * self._section.h:
+            return self.knots[-1][1]
+        self._named = x
+        return name_open(x, DIRECTIONS) if fewest else UNKNOT
 
     def sample(self) -> dict[str, float]:
         """The present values of `SAMPLED`."""
@@ -180,12 +191,14 @@ class Discharge(Guided[Motion]):
     def saved(self) -> dict[str, NDArray[Any]]:
         """Copies of the arrays that decide how the motion goes on, by name, and the knots so far."""
         knots = np.frombuffer(json.dumps(self.knots).encode(), dtype=np.uint8)
-        return self.motion.saved() | {"knots": knots, "apart": np.array(self._apart)}
+        own = {"knots": knots, "apart": np.array(self._apart), "named": self._named.copy()}
+        return self.motion.saved() | own
 
     def recover(self, saved: Mapping[str, NDArray[Any]]) -> None:
         """Go on from the arrays that `saved` gave."""
         self.motion.recover(saved)
         self.knots = [(float(t), str(name)) for t, name in json.loads(saved["knots"].tobytes())]
+        self._named = np.array(saved["named"])
         if saved["apart"] and not self._apart:
             self._part()
 

@@ -28,6 +28,7 @@ __all__ = [
     "density_bar",
     "density_colour",
     "draw_battery",
+    "name_knots",
     "plot_battery",
     "shapes",
     "top_density",
@@ -68,14 +69,15 @@ def bar_of_density(dataset: xarray.Dataset) -> Bar:
     return Bar(_density_colormap, top, shown, r"energy per length  ($E_b h^2$)")
 
 
-def density_bar(figure: Any, axes: Any, top: float, **options: Any) -> None:
-    """The colour bar of energy densities up to top [E_b h²]."""
+def density_bar(figure: Any, axes: Any, top: float, **options: Any) -> Any:
+    """The colour bar of energy densities up to top [E_b h²], which is drawn and returned."""
     scale = require("matplotlib.cm").ScalarMappable(
         require("matplotlib.colors").Normalize(0.0, top), _density_colormap()
     )
     bar = figure.colorbar(scale, ax=axes, **options)
     bar.set_label(r"energy per length ($E_b h^2$)")
     bar.outline.set_visible(False)
+    return bar
 
 
 def draw_battery(dataset: xarray.Dataset, path: str | Path) -> Path:
@@ -95,7 +97,7 @@ def draw_battery(dataset: xarray.Dataset, path: str | Path) -> Path:
         axes = figure.subplots(1, len(found), squeeze=False)[0]
         for axis, shape in zip(axes, found, strict=True):
             left = "charged" if shape.closed else f"t = {shape.time:.2g} $T_0$: {100 * shape.left:.2g} %"
-            shape.draw(axis, float(dataset.attrs["radius"]), top, f"{shape.knot}, {left}")
+            shape.draw(axis, float(dataset.attrs["radius"]), top, f"{shape.called}, {left}")
         density_bar(figure, list(axes), top, shrink=0.75, pad=0.01)
         return save(figure, path)
 
@@ -119,6 +121,11 @@ class Shape(NamedTuple):
     knot: str
     time: float
     left: float
+
+    @property
+    def called(self) -> str:
+        """The knot in words."""
+        return called(self.knot)
 
     def draw(self, axes: Any, radius: float, top: float, title: str, size: tuple[int, int] = PANEL) -> None:
         """Its picture on axes that lose their frame; top is the density of the darkest colour."""
@@ -170,7 +177,12 @@ def battery_note(dataset: xarray.Dataset, time: float) -> str:
     left = 100 * float(np.exp(np.interp(time, times, np.log(energy / energy[0]))))
     knot = dataset.attrs["frame_knots"][frame]
     shown = f"{left:.0f}" if left >= 10 else f"{left:.1f}"
-    return f"{'untied' if knot == UNKNOT else knot}, {shown} % of the energy left"
+    return f"{called(knot)}, {shown} % of the energy left"
+
+
+def called(knot: str) -> str:
+    """A knot by its name, and of none that it is untied."""
+    return "untied" if knot == UNKNOT else knot
 
 
 def _energy(dataset: xarray.Dataset) -> Floats:
@@ -218,22 +230,22 @@ def plot_battery(dataset: xarray.Dataset, path: str | Path) -> Path:
             axes[1].set_ylabel("crossings")
             axes[1].set_ylim(-0.4, float(crossings.max()) + 1.6)
             axes[1].yaxis.get_major_locator().set_params(integer=True)
-            _name_knots(axes[1], t, dataset.attrs["frame_knots"])
+            name_knots(axes[1:], t, dataset.attrs["frame_knots"])
         axes[0].set_title(f"{dataset.attrs['knot']}", fontsize=8.5)
         figure.align_ylabels(list(axes))
         return save(figure, path)
 
 
-def _name_knots(axis: Any, t: Floats, names: list[str]) -> None:
-    """Write the knots above the crossings, each where it begins, and a line between two."""
+def name_knots(axes: Sequence[Any], t: Floats, names: Sequence[str]) -> None:
+    """Lines where the knot becomes another, and above the last of the axes its name where there is room."""
     begins = [k for k, name in enumerate(names) if k == 0 or name != names[k - 1]]
     for k, after in pairwise([*begins, len(t) - 1]):
-        if k:
+        for axis in axes if k else ():
             axis.axvline(t[k], color=INK, linewidth=0.5, linestyle=(0, (2, 2)))
         low = t[1] * 0.2 if k == 0 else t[k]
         if t[after] > 1.8 * low:  # room enough for a name
-            axis.annotate(
-                names[k], (low, 0.97), xycoords=("data", "axes fraction"), xytext=(3, 0),
+            axes[-1].annotate(
+                called(names[k]), (low, 0.97), xycoords=("data", "axes fraction"), xytext=(3, 0),
                 textcoords="offset points", fontsize=6.5, color=INK, va="top",
             )  # fmt: skip
 
