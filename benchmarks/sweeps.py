@@ -287,7 +287,7 @@ def overhead_text(found: Sequence[dict[str, Any]]) -> str:
 def measured(part: str, folder: Path, points: int, quick: bool) -> Any:
     """One part of what is to be found."""
     if part == "overhead":
-        return [overhead(folder / "long", "50 ms", 150), overhead(folder / "short", "0.5 ms", 1000)]
+        return [overhead(folder / "long", "450 ms", 150), overhead(folder / "short", "0.5 ms", 1000)]
     design = folder / f"{part}.toml"
     duration = "100 ms" if quick else "0.5 ms"
     design.write_text(DESIGN.format(duration=duration, twists=TWISTS, seeds=points // TWISTS))

@@ -243,7 +243,7 @@ def _plot(result: Result, path: str) -> None:
 
 def _print(result: Result, out: str | None, json: bool) -> None:
     """The numbers of a result, for machines or for people."""
-    report = PROTOCOLS[result.protocol].report(result)
+    report = result.report()
     if json:
         print(json_format.dumps(report, allow_nan=False), flush=True)
         return

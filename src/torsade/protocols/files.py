@@ -8,6 +8,7 @@ force = "15 N"
 from __future__ import annotations
 
 import difflib
+import re
 import tomllib
 from pathlib import Path
 from types import MappingProxyType
@@ -40,8 +41,12 @@ PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
 )
 """The specification of every protocol, by name."""
 
-LARGEST = 2**16
-"""Largest specification read [bytes]: a key of very many parts takes a time that goes as their square."""
+LARGEST = 2**20
+"""Largest specification or sweep that is read [bytes]."""
+
+_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{32}}", re.A)
+"""A key of very many parts: reading one takes a time that goes as their square."""
 
 _REPLACES = MappingProxyType(
     {
@@ -95,7 +100,10 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     if len(content) > LARGEST:
         raise TorsadeError(f"{name} has more than {LARGEST} bytes; give a TOML specification")
     try:
-        return tomllib.loads(content.decode("utf-8-sig"))
+        text = content.decode("utf-8-sig")
+        if _LONG_KEY.search(text):
+            raise TorsadeError(f"{name} has a key of more than 32 parts; give a TOML specification")
+        return tomllib.loads(text)
     except RecursionError:
         raise TorsadeError(
             f"{name} has brackets too deep within each other; give a TOML specification"

@@ -62,8 +62,6 @@ COMMON = (
     "strain_stretch",
     "strain_bend",
     "strain_twist",
-    "velocity",
-    "self_torque",
 )
 """What every protocol that pulls records."""
 
