@@ -120,8 +120,8 @@ def read_table(path: Path, columns: Sequence[Column], kind: Kind) -> Table:
         cells = cells_of(line, separator, where)
         if len(cells) != len(headings):
             raise TorsadeError(
-                f"{where} has {counted(len(cells), 'column')} where the headings have {len(headings)}; leave cells "
-                "empty that are not known, and write decimals with a point"
+                f"{where} has {counted(len(cells), 'column')} where the headings have {len(headings)}; leave "
+                "cells empty that are not known, and write decimals with a point"
             )
         rows.append(Row(where, _row(cells, headings, where)))
     if not rows:
