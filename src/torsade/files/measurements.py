@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from torsade.errors import QuantityError, TorsadeError, counted, quoted
+from torsade.errors import QuantityError, TorsadeError, counted, named, quoted
 from torsade.files.csv_table import SEPARATORS, cells_of
 from torsade.files.regular import Kind, finite_number, lines
 from torsade.units import is_bearable, quantity
@@ -102,7 +102,7 @@ def read_table(path: Path, columns: Sequence[Column], kind: Kind) -> Table:
         When the file cannot be read, a column is missing or given twice, a heading has no unit or a wrong
         one, or a cell is not a number.
     """
-    name = repr(str(path))
+    name = named(path)
     headings: list[_Heading | None] = []
     texts: list[str] = []
     separator = ""

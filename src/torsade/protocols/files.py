@@ -14,7 +14,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from torsade.errors import TorsadeError, quoted
+from torsade.errors import TorsadeError, named, quoted
 from torsade.protocols.base import Spec
 from torsade.protocols.battery import Battery
 from torsade.protocols.bend_twist import BendTwist
@@ -77,7 +77,7 @@ def load_spec(path: str | Path) -> Spec:
 def read_fields(path: str | Path) -> dict[str, Any]:
     """The fields in a TOML file, `protocol` among them and known, the others as they are."""
     fields = read_toml(path)
-    check_protocol(fields.get("protocol"), repr(str(path)))
+    check_protocol(fields.get("protocol"), named(path))
     if "centerline" in fields:
         fields["centerline"] = beside(path, fields["centerline"])
     return fields
@@ -93,7 +93,7 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     """
     from torsade.files.regular import Kind, opened
 
-    name = repr(str(path))
+    name = named(path)
     kind = Kind("fields", "reef.toml", "a specification", "leave out what is no field", "one field")
     with opened(Path(path), kind) as (file, _):
         content = file.read(LARGEST + 1)
