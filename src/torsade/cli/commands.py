@@ -236,6 +236,7 @@ def _plot(result: Result, path: str) -> None:
         "bend-twist": plots.plot_bent,
         "pendulum": plots.plot_swing,
         "battery": battery.plot_battery,
+        "suture": plots.plot_wound,
         **dict.fromkeys(BREAKING, cascade.plot_cascade),
     }
     by_protocol[result.protocol](result.dataset, path)

@@ -23,6 +23,7 @@ from torsade.protocols.prison_escape import PrisonEscape
 from torsade.protocols.reidemeister import Reidemeister
 from torsade.protocols.snap_quench import SnapQuench
 from torsade.protocols.snap_twist import SnapTwist
+from torsade.protocols.suture import Suture
 from torsade.protocols.tighten import Tighten
 
 __all__ = ["PROTOCOLS", "beside", "check_protocol", "load_spec", "merged", "read_fields", "read_toml"]
@@ -37,6 +38,7 @@ PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
         "snap-quench": SnapQuench,
         "pendulum": Pendulum,
         "battery": Battery,
+        "suture": Suture,
     }
 )
 """The specification of every protocol, by name."""

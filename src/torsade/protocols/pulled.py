@@ -316,11 +316,19 @@ def _settle(motion: Motion, until: float) -> Outcome:
 
 def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, float | Floats]:
     """Everything recorded at the present time."""
+    now = motion.measure()
+    common = frame_of_fibers(motion, motion.assembly, motion.state, now, radius)
+    return common | experiment.measure(motion.state) | experiment.observe(motion.state, now)
+
+
+def frame_of_fibers(
+    motion: Motion, assembly: Assembly, state: State, now: Measured, radius: float
+) -> dict[str, float | Floats]:
+    """What every protocol that pulls records, named in `COMMON`; assembly and state are those of fibers."""
     from torsade import observables
 
-    assembly, state, now = motion.assembly, motion.state, motion.measure()
     strain = observables.surface_strain(assembly, state, radius)
-    common: dict[str, float | Floats] = {
+    return {
         "time": motion.time,
         "compression": now.compression,
         "twist": observables.twist(assembly, state),
@@ -338,4 +346,3 @@ def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, f
         "velocity": state.v,
         "self_torque": now.self_torque,
     }
-    return common | experiment.measure(state) | experiment.observe(state, now)
