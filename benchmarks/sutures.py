@@ -18,9 +18,7 @@ from torsade.protocols.suture import SIX, Suture, turns_of
 
 PAGE = Path(__file__).parents[1] / "docs" / "sutures.md"
 
-NAMES = dict(
-    zip(SIX, ("reef", "surgeon's", "reversed", "double", "granny", "surgeon's granny"), strict=True)
-)
+NAMES = dict(zip(SIX, ("reef", "surgeon's", "reversed", "double", "granny", "surgeon's granny"), strict=True))
 
 QUICK: Mapping[str, Any] = {"duration": 0.2, "frames": 4, "skin_radius": 1e-3}
 

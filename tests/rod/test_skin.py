@@ -160,7 +160,9 @@ def test_no_fiber_goes_into_a_cylinder(way, through):
     """Into it, or in one leap through to its other side; along its surface is free."""
     x = np.array([[H_S + H, -0.2, 0.0], [H_S + H, 0.2, 0.0]])
     a = assemble([x])
-    a, state, bc = tied_around(a, initial_state(a, [x]), ends.free(a), np.zeros((1, 3)), Tissue(H_S, 1.0, 1.0))
+    a, state, bc = tied_around(
+        a, initial_state(a, [x]), ends.free(a), np.zeros((1, 3)), Tissue(H_S, 1.0, 1.0)
+    )
     after = state.x.copy()
     after[:2, :2] += way
     assert pierced(a, bc.skin, state.x, after) == ((0, 1) if through else (-1, -1))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json as json_format
 import sys
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
@@ -22,10 +23,13 @@ if TYPE_CHECKING:
     from torsade.protocols.base import Spec
     from torsade.results import Result
 
-__all__ = ["check_drawings", "demo", "progress", "run"]
+__all__ = ["check_drawings", "demo", "now_and_then", "progress", "run"]
 
 BREAKING = ("snap-twist", "snap-quench")
 """Protocols whose results are drawn in pieces."""
+
+SAY_EVERY = 30.0
+"""Time between lines about progress where there is no bar [s]."""
 
 INSTALL_VIEW = 'pip install "torsade[view]"'
 
@@ -167,6 +171,20 @@ def _notice(share: float, note: str) -> None:
     """One line when kernels must be compiled."""
     if note.startswith(("compiling", "stopping")):
         say(note)
+
+
+def now_and_then() -> Progress:
+    """Says what it is told, at times: for what is long and told often."""
+    said = [time.monotonic()]
+
+    def notice(share: float, note: str) -> None:
+        if note.startswith(("compiling", "stopping")):
+            say(note)
+        elif time.monotonic() - said[0] > SAY_EVERY:
+            said[0] = time.monotonic()
+            say(note)
+
+    return notice
 
 
 @contextmanager

@@ -23,7 +23,16 @@ from torsade.topology.identify import identify_open
 from torsade.topology.measures import average_crossing_number, writhe
 from torsade.topology.names import UNKNOT
 
-__all__ = ["NAMES", "SAMPLED", "Discharge", "crossing_losses", "discharge_times", "hinge_at", "hinge_to_cut"]
+__all__ = [
+    "NAMES",
+    "SAMPLED",
+    "Discharge",
+    "crossing_losses",
+    "discharge_times",
+    "hinge_at",
+    "hinge_to_cut",
+    "mean_on_the_way",
+]
 
 NAMES = (
     "time",
@@ -44,7 +53,7 @@ NAMES = (
 )
 """Of what `Discharge.frame` gives."""
 
-SAMPLED = ("energy", "dissipation", "fewest_crossings")
+SAMPLED = ("energy", "dissipation", "fewest_crossings", "non_planarity", "torsion")
 """Of what `Discharge.sample` gives."""
 
 EMPTY = 1e-3
@@ -155,10 +164,13 @@ class Discharge(Guided[Motion]):
 
     def sample(self) -> dict[str, float]:
         """The present values of `SAMPLED`."""
+        x = self.motion.state.x
         return {
             "energy": self.energies().total,
             "dissipation": self.motion.dissipation,
-            "fewest_crossings": fewest_crossings(_drawn_in(self.motion.state.x), False),
+            "fewest_crossings": fewest_crossings(_drawn_in(x), False),
+            "non_planarity": observables.non_planarity(x),
+            "torsion": observables.mean_torsion(x, self._section.h),
         }
 
     def warm_up(self) -> None:
@@ -221,3 +233,20 @@ def crossing_losses(time: Floats, crossings: Floats) -> list[float]:
     most = int(crossings[0])
     since = [int(np.flatnonzero(crossings >= k)[-1]) + 1 for k in range(most, 0, -1)]
     return [float(time[i]) for i in since if i < len(time)]
+
+
+def mean_on_the_way(energy: Floats, values: Floats, between: tuple[float, float]) -> float | None:
+    """Mean of values (n,) over the logarithm of the energy (n,), from one share of its first to another.
+
+    How long a shape stays does not count, but how much energy it gives off. None where the second share is
+    not reached, or the energy passes both between two samples.
+    """
+    share = np.minimum.accumulate(energy) / energy[0]
+    high, low = between
+    on_the_way = np.flatnonzero((share <= high) & (share >= low))
+    if share[-1] > low or len(on_the_way) < 2:
+        return None
+    fallen = -np.log(share[on_the_way])
+    if fallen[-1] <= fallen[0]:
+        return None
+    return float(np.trapezoid(values[on_the_way], fallen) / (fallen[-1] - fallen[0]))
