@@ -254,6 +254,7 @@ def _plot(result: Result, path: str) -> None:
         "bend-twist": plots.plot_bent,
         "pendulum": plots.plot_swing,
         "battery": battery.plot_battery,
+        "suture": plots.plot_wound,
         **dict.fromkeys(BREAKING, cascade.plot_cascade),
     }
     by_protocol[result.protocol](result.dataset, path)
@@ -261,7 +262,7 @@ def _plot(result: Result, path: str) -> None:
 
 def _print(result: Result, out: str | None, json: bool) -> None:
     """The numbers of a result, for machines or for people."""
-    report = PROTOCOLS[result.protocol].report(result)
+    report = result.report()
     if json:
         print(json_format.dumps(report, allow_nan=False), flush=True)
         return

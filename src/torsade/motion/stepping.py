@@ -28,6 +28,7 @@ from torsade.rod.contact import Model
 from torsade.rod.factor import Factor
 from torsade.rod.kinematics import carry_directors, edge_geometry, spread_directors
 from torsade.rod.neighbours import edge_midpoints
+from torsade.rod.skin import pierced
 
 REACHED = 0
 SLIPPED = 1
@@ -125,6 +126,7 @@ def _verdict(status: int) -> int:
 
 def _judge(
     a: Assembly,
+    bc: Boundary,
     state: State,
     near: Near,
     control: Control,
@@ -148,6 +150,8 @@ def _judge(
     if not move < 1e300:
         return 8.0, UNSOLVABLE
     clock.culprit[0], clock.culprit[1] = crossing(a, control, near, state.x, g.x, g.length, g.mid, move)
+    if clock.culprit[0] < 0:
+        clock.culprit[0], clock.culprit[1] = pierced(a, bc.skin, state.x, g.x)
     if clock.culprit[0] >= 0:
         return 8.0, CROSSING
     if control.fixed_step == 0.0 and move > control.move:
@@ -214,7 +218,7 @@ def advance(
         if job == SPECTRUM:
             _take_spectrum(g, clock)
             continue
-        ratio, judged = _judge(a, state, near, control, status, dt, g, clock)
+        ratio, judged = _judge(a, bc, state, near, control, status, dt, g, clock)
         if judged != REACHED:
             clock.count[1] += 1
             clock.time[1] = dt * max(0.1, 0.8 * ratio ** (-1.0 / 3.0))

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from torsade.errors import QuantityError, TorsadeError
+from torsade.errors import TorsadeError
 from torsade.protocols.base import Driven, Positive, Progress, Trial
-from torsade.units import Number, Time, Viscosity
+from torsade.units import Number, Time, Viscosity, Whole
 
 if TYPE_CHECKING:
     from torsade.arrays import Floats
@@ -118,7 +118,7 @@ class Battery(Driven):
         "shapes that are at rest but not stable.",
         examples=["0.01"],
     )
-    seed: int = Field(0, ge=0, le=2**63 - 1, description="Of that displacement.")
+    seed: Whole = Field(0, ge=0, le=2**63 - 1, description="Of that displacement.")
     charging: Annotated[Time, Positive] | None = Field(
         None,
         description="Longest time to come to rest before the cut; by default 100 T_0.",
@@ -127,7 +127,7 @@ class Battery(Driven):
     duration: Annotated[Time, Positive] | None = Field(
         None, description="Longest time to follow it after the cut; by default 100 T_0.", examples=["10 s"]
     )
-    frames: int = Field(
+    frames: Whole = Field(
         60,
         ge=1,
         le=1_000_000,
@@ -140,13 +140,6 @@ class Battery(Driven):
         from torsade.knots.finding import known_closed
 
         return known_closed(name)
-
-    @field_validator("nodes", "seed", mode="before")
-    @classmethod
-    def _no_truth_value_either(cls, value: object) -> object:
-        if isinstance(value, bool):
-            raise QuantityError(f"is {value}; give a whole number")
-        return value
 
     @model_validator(mode="after")
     def _movable(self) -> Battery:

@@ -99,7 +99,8 @@ def carry_directors(edge_start: Ints, director: Floats, tangent_0: Floats, tange
     """
     for f in range(edge_start.shape[0] - 1):
         e = edge_start[f]
-        transport(director[e], tangent_0[e], tangent[e], director[e])
+        if e < edge_start[f + 1]:
+            transport(director[e], tangent_0[e], tangent[e], director[e])
 
 
 def spread_directors(hinges: Ints, tangent: Floats, reference_twist: Floats, director: Floats) -> None:

@@ -14,7 +14,7 @@ from torsade.curve import perpendicular
 from torsade.errors import TorsadeError
 from torsade.stopping import Patience
 from torsade.view.battery import bar_of_density, density_colour
-from torsade.view.camera import SAMPLE, View, best_side, frame, knot_body
+from torsade.view.camera import SAMPLE, View, best_side, frame, knot_body, level_right
 from torsade.view.captions import EVER_FASTER, Captions, Clock, Ring, pace
 from torsade.view.cascade import THICKER
 from torsade.view.colours import strain_colour, strand_colour, stress_colour
@@ -22,6 +22,7 @@ from torsade.view.encode import ENDINGS, encoder
 from torsade.view.moments import Moment, Moments, colours_of
 from torsade.view.overlay import STRAIN, STRESS
 from torsade.view.scene import lit_by_lamp, shadow_pieces
+from torsade.view.skin import FROM_ABOVE, Skin, skin_colour, skin_over_time
 from torsade.view.stage import Stage
 from torsade.view.tube import SmoothCurve, divisions, smooth_centerline, tube
 
@@ -107,13 +108,14 @@ def movie(
     colour = _colour(dataset, colour)
     moments = Moments(dataset, frames, None if colour == "strands" else colour)
     shots = list(_shots(moments, pictures))
-    shooting = _Shooting(moments, sides(size), colour, whole, _held(dataset))
+    skin = skin_over_time(dataset)
+    shooting = _Shooting(moments, sides(size), colour, whole, _held(dataset), skin)
     captions = _captions(dataset, moments, shooting, colour, seconds)
     # A signal that comes while others draw would be lost in what they call back.
     with (
         Patience(lambda: None) as patience,
         encoder(path, shooting.view.size, fps) as add,
-        Stage(shooting.view, samples=8) as stage,
+        Stage(shooting.view, samples=8, glass=0 if skin is None else 2) as stage,
     ):
         for k, shot in enumerate(shots):
             tell(k / pictures, f"picture {k + 1} of {pictures}")
@@ -185,12 +187,19 @@ class _Shooting:
     """
 
     def __init__(
-        self, moments: Moments, size: tuple[int, int], colour: str, whole: bool, held: float
+        self,
+        moments: Moments,
+        size: tuple[int, int],
+        colour: str,
+        whole: bool,
+        held: float,
+        skin: Callable[[float], Skin] | None = None,
     ) -> None:
         self._colour, self._closed, self._breaks = colour, moments.closed, moments.breaks
         self.unit = moments.radius * (THICKER if moments.breaking else 1.0)
         self._origin = np.concatenate(moments.at(moments.times[0]).strands).mean(axis=0)
         self._parts: dict[tuple[int, ...], list[Ints]] = {}
+        self._skin = skin
         looked = [(moment.time, self._nodes(moment)) for moment in moments.spread()]
         if moments.flat or moments.battery or whole:
             body = np.concatenate([x for _, strands in looked for x in strands])
@@ -219,6 +228,8 @@ class _Shooting:
 
     def _side(self, nodes: Sequence[Floats]) -> tuple[Floats, Floats]:
         """Directions right and toward the camera from which a knot is plainest."""
+        if self._skin is not None:
+            return level_right(FROM_ABOVE), FROM_ABOVE
         curves = self._curves(nodes)
         body = np.concatenate(knot_body(curves, self._closed, 1.0))
         return best_side([c.x for c in curves], body, 1.0, level=not all(self._closed))
@@ -252,6 +263,9 @@ class _Shooting:
         else:
             palette = PALETTES[self._colour]
             colours = [palette(m.at_vertices(v)) for m, v in zip(meshes, moment.values, strict=True)]
+        if self._skin is not None:
+            bodies = self._skin(moment.time).meshes(self._origin, self.unit)
+            meshes, colours = meshes + bodies, colours + [skin_colour(m) for m in bodies]
         pieces = shadow_pieces(self._curves(nodes), loops)
         return stage.shown(meshes, lit_by_lamp(meshes, colours, pieces, self.view))
 
