@@ -78,6 +78,11 @@ def checks(catalogue: Catalogue) -> Found:
     return dict(zip(names, catalogue.query(sql).rows[0], strict=True))
 
 
+def changes() -> dict[str, Mapping[str, Any]]:
+    """How resonant batteries are run once more: all ways but a finer tolerance, which moves nothing."""
+    return {name: options for name, options in variants().items() if not name.startswith("tolerance")}
+
+
 def resonances(table: Table, short: Mapping[str, Any]) -> list[Found]:
     """Every resonant battery once more, refined and otherwise, with its slowness then."""
     columns = ("knot", "twist_density", "T10_T0", "slowness", "resonant", "peak", "cut_at")
@@ -85,7 +90,7 @@ def resonances(table: Table, short: Mapping[str, Any]) -> list[Found]:
     found = []
     for row in (row for row in rows if row["resonant"]):
         median = row["T10_T0"] / row["slowness"]
-        for name, options in variants().items():
+        for name, options in changes().items():
             place = {"cut_at": (row["cut_at"] + 0.25) % 1.0} if name.startswith("cut") else {}
             if name == "as it is":
                 then = row["slowness"]
@@ -99,9 +104,8 @@ def resonances(table: Table, short: Mapping[str, Any]) -> list[Found]:
 
 def loose(knots: Sequence[str], short: Mapping[str, Any]) -> list[Found]:
     """Untwisted batteries long enough not to be stretched."""
-    return [
-        run(knot, 0.0, slenderness=LOOSE, **{**short, "nodes": short.get("nodes", 200)}) for knot in knots
-    ]
+    options = {**short, "slenderness": LOOSE, "nodes": 80 if short else 200}
+    return [run(knot, 0.0, **options) for knot in knots]
 
 
 def crossing(table: Table) -> list[float]:
@@ -152,7 +156,7 @@ def effort_table(found: Mapping[str, Any]) -> str:
 
 def resonance_table(rows: Sequence[Found]) -> str:
     """Slowness of each resonant battery in all variants."""
-    names = list(variants())
+    names = list(changes())
     cells = []
     for key in dict.fromkeys((row["knot"], row["twist_density"]) for row in rows):
         own = [row for row in rows if (row["knot"], row["twist_density"]) == key]

@@ -101,11 +101,8 @@ class Battery(Driven):
     eta_f_ratio: Annotated[Number, Positive] = Field(
         0.1, description="Collision viscosity over internal viscosity, eta_f/eta.", examples=["0.1"]
     )
-    nodes: int | None = Field(
-        None,
-        ge=16,
-        le=10_000,
-        description="Nodes of the closed fiber; by default two for every radius of length.",
+    nodes: Annotated[Whole, Field(ge=16, le=10_000)] | None = Field(
+        None, description="Nodes of the closed fiber; by default two for every radius of length."
     )
     tolerance: Annotated[Number, Positive] | None = Field(
         None,
