@@ -18,8 +18,6 @@ from torsade.protocols.suture import SIX, Suture, turns_of
 
 PAGE = Path(__file__).parents[1] / "docs" / "sutures.md"
 
-NAMES = dict(zip(SIX, ("reef", "surgeon's", "reversed", "double", "granny", "surgeon's granny"), strict=True))
-
 QUICK: Mapping[str, Any] = {"duration": 0.2, "frames": 4, "skin_radius": 1e-3}
 
 Found = dict[str, Any]
@@ -92,7 +90,7 @@ def six_table(found: Sequence[Found]) -> str:
     )  # fmt: skip
     rows = [
         (
-            r["throws"], NAMES[r["throws"]], r["crossings"], f"{r['writhe']:+d}", f"{r['tau']:.4g}",
+            r["throws"], SIX[r["throws"]], r["crossings"], f"{r['writhe']:+d}", f"{r['tau']:.4g}",
             *(1e6 * r["z_displacement_m"][k] for k in ("a", "relative")), 1e6 * r["z_peak_m"]["a"],
             f"{1e3 * r['gap_m']:.3f}", 1e3 * r["skin_force_N"]["normal"][0],
             1e6 * r["skin_force_N"]["shear"][0], r["c_f"],

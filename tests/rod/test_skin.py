@@ -8,13 +8,13 @@ import pytest
 from rod.helpers import Probe, gradient, midpoints, random_strand, toy_model
 from torsade.assembly import assemble, initial_state
 from torsade.motion import ends
+from torsade.motion.piercing import pierced
 from torsade.motion.wound import Tissue, tied_around
 from torsade.rod.contact import contact_pressure
 from torsade.rod.skin import (
     add_skin_drag,
     add_skin_forces,
     add_skin_torques,
-    pierced,
     skin_energy,
     weigh_skin,
 )
@@ -27,7 +27,8 @@ def wrapped(seed=0, friction=0.0, drag=1.0):
     rng = np.random.default_rng(seed)
     turn = np.linspace(0.3, 4.0, 40)
     arc = (H_S + 0.8 * H) * np.column_stack([np.cos(turn), np.sin(turn), 0.3 * turn])
-    strands = [arc + 0.2 * H * rng.normal(size=arc.shape), random_strand(seed, 12) + [0.9, 0.3, 0]]
+    aside = np.array([0.9, 0.3, 0.0])
+    strands = [arc + 0.2 * H * rng.normal(size=arc.shape), random_strand(seed, 12) + aside]
     a = assemble(strands)
     axes = np.array([[0.0, 0.0, 0.0], [2 * H_S - 0.3 * H, 0.1, 0.0]])
     tissue = Tissue(H_S, 3.0, 0.7, drag, friction, 1e-3)

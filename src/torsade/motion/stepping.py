@@ -10,6 +10,7 @@ from torsade.assembly import Assembly, State
 from torsade.motion.ends import Boundary
 from torsade.motion.guard import largest_move
 from torsade.motion.near import Near, crossing, find_near, list_near
+from torsade.motion.piercing import pierced
 from torsade.motion.rates import DENSE, LOOSE, OK
 from torsade.motion.scheme import (
     ONE_STAGE,
@@ -28,7 +29,6 @@ from torsade.rod.contact import Model
 from torsade.rod.factor import Factor
 from torsade.rod.kinematics import carry_directors, edge_geometry, spread_directors
 from torsade.rod.neighbours import edge_midpoints
-from torsade.rod.skin import pierced
 
 REACHED = 0
 SLIPPED = 1

@@ -75,9 +75,9 @@ def tied_around(
 class SkinForces(NamedTuple):
     """What fibers do to each cylinder, and what holds it.
 
-    normal, around, along (n_cylinders, n_edges) are the forces of each edge on the skin, per rest length [N/m]:
-    into it, around it counterclockwise as seen from +z, and along z. total (n_cylinders, 3) is their sum [N],
-    spring (n_cylinders, 3) the force -k_s (w - w_0) [N], contact and stored the energies of contacts and
+    normal, around, along (n_cylinders, n_edges) are the forces of each edge on the skin, per rest length
+    [N/m]: into it, around it counterclockwise as seen from +z, and along z. total (n_cylinders, 3) is
+    their sum [N], spring (n_cylinders, 3) the force -k_s (w - w_0) [N], contact and stored the energies of contacts and
     springs [J].
     """
 
@@ -112,16 +112,14 @@ def measure_skin(motion: Motion) -> SkinForces:
         np.sum(force[:, :2] * counterclockwise, axis=1),
         force[:, 2],
     )
-    densities = []
-    for part in parts:
-        density = np.zeros(shape)
+    normal, around, along = (np.zeros(shape) for _ in parts)
+    for density, part in zip((normal, around, along), parts, strict=True):
         density[cylinder, edge] = part / a.rest_length[edge]
-        densities.append(density)
     total = np.zeros((len(skin.node), 3))
     np.add.at(total, cylinder, force)
     spring = -skin.stiffness * (state.x[skin.node] - skin.rest)
     contact, stored = skin_energy(a, motion.model, skin, state.x, _midpoints(a, state))
-    return SkinForces(*densities, total, spring, contact, stored)
+    return SkinForces(normal, around, along, total, spring, contact, stored)
 
 
 def _midpoints(a: Assembly, state: State) -> Floats:

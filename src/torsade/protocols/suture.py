@@ -6,13 +6,14 @@ import hashlib
 import math
 import re
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
 from torsade.errors import QuantityError, TorsadeError, quoted
 from torsade.protocols.base import Positive, Trial
-from torsade.protocols.pulled import COMMON, Experiment, Pulled, frame_of_fibers
+from torsade.protocols.pulled import COMMON, Experiment, Pulled
 from torsade.units import Angle, Force, Length, Number, Stiffness, Time, Velocity
 
 if TYPE_CHECKING:
@@ -22,30 +23,25 @@ if TYPE_CHECKING:
     from torsade.assembly import Assembly, State
     from torsade.centerline import Centerline
     from torsade.knots.stitch import Stitch
-    from torsade.motion.moving import Outcome
-    from torsade.motion.overdamped import Motion
     from torsade.results import Result
 
 __all__ = ["SIX", "Suture", "tau_of"]
 
-SIX = ("3,-3", "5,-3", "3,-5", "5,-5", "3,3", "5,3")
-"""Reef, surgeon's, reversed surgeon's, double, granny and surgeon's granny: two throws each."""
+SIX: Mapping[str, str] = MappingProxyType(
+    {
+        "3,-3": "reef",
+        "5,-3": "surgeon's",
+        "3,-5": "reversed surgeon's",
+        "5,-5": "double",
+        "3,3": "granny",
+        "5,3": "surgeon's granny",
+    }
+)
+"""Names of the sutures that are compared, by their throws."""
 
 USUAL_SKIN, USUAL_GAP = 10.0, 5.0  # radii
 THINNEST = 5.0  # radii
 MOST_TURNS = 15
-
-LAST = 0.75
-"""Share of the pull from which the speed is taken at which the ends run out."""
-
-DEPTH = 1e-3
-"""How deep a fiber that is laid on skin lies in it, in diameters."""
-
-SAMPLED = ("gap", "drawn", "z_a", "z_b")
-RECORDED = (
-    "skin_position", "gap", "drawn", "slip_speed", "energy_skin", "energy_springs", "spring_force",
-    "skin_force", "skin_pressing", "skin_shearing", "skin_normal", "skin_around", "skin_along",
-)  # fmt: skip
 
 
 def turns_of(throws: str) -> tuple[int, int]:
@@ -225,6 +221,7 @@ class Suture(Pulled):
         from torsade.motion.overdamped import Motion, model
         from torsade.motion.wound import Tissue, tied_around
         from torsade.protocols.shapes import check_frames
+        from torsade.protocols.wound import RECORDED, SAMPLED, Wound
 
         stitch = self.stitch()
         shape = self.configuration()
@@ -271,9 +268,9 @@ class Suture(Pulled):
         """The numbers of a result under the keys of `--json`: those of the end of the pull, and histories.
 
         z_displacement_m are e_z . (w - w_0) of both sides, and the size of their difference; z_peak_m the
-        largest they were on the way. skin_force_N are the sums of normal and of shear forces along the loop, of
-        their parts along z, and what the springs hold the sides with, for a and b each. slip_speed_m_per_s is
-        that at which each end runs out of the knot, in the mean of the last quarter of the pull.
+        largest they were on the way. skin_force_N are the sums of normal and of shear forces along the loop,
+        of their parts along z, and what the springs hold the sides with, for a and b each. slip_speed_m_per_s
+        is that at which each end runs out of the knot, in the mean of the last quarter of the pull.
         """
         data, attrs = result.dataset, result.dataset.attrs
         spec = cls(**result.spec)
@@ -311,112 +308,3 @@ class Suture(Pulled):
 def _sides(z: Floats) -> dict[str, float]:
     """Displacements of both sides along z [m], and the size of their difference."""
     return {"a": float(z[0]), "b": float(z[1]), "relative": abs(float(z[0] - z[1]))}
-
-
-class Wound:
-    """A suture at work: what is recorded of it."""
-
-    def __init__(self, spec: Suture, fiber: Assembly, motion: Motion) -> None:
-        self.spec, self.fiber, self.motion = spec, fiber, motion
-        self.n_nodes = len(fiber.node_length)
-        self.load = motion.boundary.force
-        self.pull = self.load[[0, self.n_nodes - 1]] / spec.force
-        self.ends = motion.state.x[[0, self.n_nodes - 1]].copy()
-        self.rest_z = motion.state.x[self.n_nodes :, 2].copy()
-
-    def strand(self) -> State:
-        """The present state of the fiber alone."""
-        state, n = self.motion.state, self.n_nodes
-        return state._replace(x=state.x[:n], v=state.v[:n])
-
-    def sample(self) -> dict[str, float]:
-        """Present gap, length drawn out and z-displacements [m]."""
-        import numpy as np
-
-        x = self.motion.state.x
-        w = x[self.n_nodes :]
-        ends = x[[0, self.n_nodes - 1]]
-        z = w[:, 2] - self.rest_z
-        return {
-            "gap": float(np.linalg.norm(w[1, :2] - w[0, :2]) - 2 * self.spec.h_s),
-            "drawn": float(np.sum((ends - self.ends) * self.pull)),
-            "z_a": float(z[0]),
-            "z_b": float(z[1]),
-        }
-
-    def frame(self) -> dict[str, float | Floats]:
-        """Everything recorded at the present time."""
-        import numpy as np
-
-        from torsade.motion.wound import measure_skin
-
-        motion = self.motion
-        fiber = frame_of_fibers(motion, self.fiber, self.strand(), motion.measure(), self.spec.h)
-        skin, sample = measure_skin(motion), self.sample()
-        speed = motion.state.v[[0, self.n_nodes - 1]] * self.pull
-        return fiber | {
-            "skin_position": motion.state.x[self.n_nodes :],
-            "gap": sample["gap"],
-            "drawn": sample["drawn"],
-            "slip_speed": 0.5 * float(np.sum(speed)),
-            "energy_skin": skin.contact,
-            "energy_springs": skin.stored,
-            "spring_force": skin.spring,
-            "skin_force": skin.total,
-            "skin_pressing": skin.normal @ self.fiber.rest_length,
-            "skin_shearing": np.hypot(skin.around, skin.along) @ self.fiber.rest_length,
-            "skin_normal": skin.normal,
-            "skin_around": skin.around,
-            "skin_along": skin.along,
-        }
-
-    def begin(self, time: float) -> None:
-        """Pull, or let go once the time to pull is over."""
-        # A stop may lie the billionth part of a run before the time that it stands for.
-        over = time * (1 + 1e-8) >= self.spec.duration
-        self.motion.boundary = self.motion.boundary._replace(force=0.0 * self.load if over else self.load)
-
-    def catch(self, until: float) -> Outcome | None:
-        """Lay a fiber that is pulled away from the wound on the skin, from below: until then nothing holds it."""
-        import numpy as np
-
-        from torsade.motion.moving import Outcome
-
-        x, edges = self.motion.state.x, self.fiber.edges
-        middle = x[edges].mean(axis=1)
-        reach = self.spec.h_s + self.spec.h * (1 - 2 * DEPTH)
-        across = middle[:, None, 0] - x[None, self.n_nodes :, 0]
-        deep = np.sqrt(np.maximum(reach**2 - across**2, 0.0))
-        way = x[None, self.n_nodes :, 1] - deep - middle[:, None, 1]
-        way = way[(np.abs(across) < reach) & (way >= 0)]
-        if not way.size:
-            return None
-        x[: self.n_nodes, 1] += way.min()
-        return Outcome.PAUSED
-
-    def conclude(self, history: Mapping[str, Floats], loose_at: float | None) -> dict[str, Any]:
-        """Largest displacements along z on the way, when the wound closed, and how fast the ends ran out."""
-        import numpy as np
-
-        spec = self.spec
-        time, z = history["time"], np.stack([history["z_a"], history["z_b"]], axis=1)
-        relative = np.abs(z[:, 0] - z[:, 1])
-        numbers: dict[str, Any] = {
-            "z_peak_m": {
-                "a": float(z[np.argmax(np.abs(z[:, 0])), 0]),
-                "b": float(z[np.argmax(np.abs(z[:, 1])), 1]),
-                "relative": float(relative.max()),
-            }
-        }
-        shut = np.flatnonzero(history["gap"] <= 0)
-        if shut.size:
-            numbers["closed_at_s"] = float(time[shut[0]])
-        ends = np.minimum(float(time[-1]), spec.duration) * np.array([LAST, 1.0])
-        first, last = np.interp(ends, time, history["drawn"])
-        if ends[1] > ends[0]:
-            speed = float(0.5 * (last - first) / (ends[1] - ends[0]))
-            numbers["slip_speed_m_per_s"] = speed
-            if speed > 0:
-                unit = spec.force * 2 * spec.h / (spec.fiber_material.eta * spec.section.A)
-                numbers["c_f"] = unit / speed
-        return numbers

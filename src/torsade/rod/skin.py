@@ -42,9 +42,9 @@ class Skin(NamedTuple):
 
     node, fiber (n_cylinders,) say which node and which fiber without edges stand for each; rest
     (n_cylinders, 3) [m]. radius h_s [m], stiffness k_s [N/m], ground zeta [N s/m], drag over that between
-    strands, friction coefficient and slip_speed v_0 [m/s]. The first count[0] rows of edge, cylinder, direction
-    (n, 2; from edge to axis), push (n,) [N] and weight (n,) [N s/m] are contacts; column (n_nodes, 3) and small
-    (n_cylinders, n_cylinders + 3) are scratch.
+    strands, friction coefficient and slip_speed v_0 [m/s]. The first count[0] rows of edge, cylinder,
+    direction (n, 2; from edge to axis), push (n,) [N] and weight (n,) [N s/m] are contacts; column (n_nodes, 3) and
+    small (n_cylinders, n_cylinders + 3) are scratch.
     """
 
     node: Ints
@@ -132,7 +132,7 @@ def _part_cylinders(m: Model, radius: float, i: Index, j: Index, x: Floats, forc
     dx = x[i, 0] - x[j, 0]
     dy = x[i, 1] - x[j, 1]
     D = math.sqrt(dx * dx + dy * dy)
-    if D < 2.0 * radius:
+    if 2.0 * radius > D:
         N = m.diameter * 2.0 * radius * contact_pressure(m, D - 2.0 * radius + m.diameter)
         force[i, 0] += N * dx / D
         force[i, 1] += N * dy / D
@@ -299,7 +299,7 @@ def couple_skin(
 
 
 def _solve_small(size: Index, rows: Floats) -> None:
-    """Solve a symmetric, positive definite system of a few unknowns; its three right sides stand behind it."""
+    """Solve a symmetric, positive definite system of a few unknowns; three right sides stand behind it."""
     for p in range(size):
         for q in range(p + 1, size):
             l = rows[q, p] / rows[p, p]
@@ -365,56 +365,4 @@ def on_skin(skin: Skin | tuple[()], body: Index, component: Ints) -> bool:
     return found
 
 
-def _segment_distance(x: Floats, i: Index, j: Index, c: Index) -> float:
-    """Distance [m] of the segment from node i to node j from the line along z through node c."""
-    px = x[i, 0] - x[c, 0]
-    py = x[i, 1] - x[c, 1]
-    ex = x[j, 0] - x[i, 0]
-    ey = x[j, 1] - x[i, 1]
-    squared = ex * ex + ey * ey
-    t = -(px * ex + py * ey) / squared if squared > 0.0 else 0.0
-    t = min(max(t, 0.0), 1.0)
-    return math.sqrt((px + t * ex) ** 2 + (py + t * ey) ** 2)
-
-
-def _approach(x0: Floats, x1: Floats, i: Index, c: Index) -> float:
-    """How far [m] node i moves across z from x0 to x1, as seen from node c."""
-    dx = x1[i, 0] - x0[i, 0] - x1[c, 0] + x0[c, 0]
-    dy = x1[i, 1] - x0[i, 1] - x1[c, 1] + x0[c, 1]
-    return math.sqrt(dx * dx + dy * dy)
-
-
-def pierced(a: Assembly, skin: Skin | tuple[()], x0: Floats, x1: Floats) -> tuple[int, int]:
-    """An edge and the cylinder into which its axis would go as nodes move from x0 to x1, or (-1, -1).
-
-    Also when it may pass through the cylinder's axis on the way, and for cylinders, which count on from
-    n_edges, when one would go into the other by half. A distance shrinks no faster than nodes move, so on the
-    way it is at least half of what the sum of both ends exceeds the motion by.
-    """
-    if len(skin) == 0:
-        return -1, -1
-    node, edges = skin.node, a.edges
-    n_edges = edges.shape[0]
-    for c in range(node.shape[0]):
-        center = node[c]
-        for e in range(n_edges):
-            i = edges[e, 0]
-            j = edges[e, 1]
-            after = _segment_distance(x1, i, j, center)
-            before = _segment_distance(x0, i, j, center)
-            move = max(_approach(x0, x1, i, center), _approach(x0, x1, j, center))
-            if after < skin.radius or before + after <= move:
-                return e, n_edges + c
-        for d in range(c):
-            after = _segment_distance(x1, node[d], node[d], center)
-            before = _segment_distance(x0, node[d], node[d], center)
-            if after < skin.radius or before + after <= _approach(x0, x1, node[d], center):
-                return n_edges + c, n_edges + d
-    return -1, -1
-
-
-compile_kernels(
-    __name__,
-    inline=("_part_cylinders", "_potential", "_segment_distance", "_approach", "_solve_small"),
-    plain=("skin_on",),
-)
+compile_kernels(__name__, inline=("_part_cylinders", "_potential", "_solve_small"), plain=("skin_on",))
