@@ -42,6 +42,7 @@ __all__ = [
     "Torque",
     "Velocity",
     "Viscosity",
+    "Whole",
     "bearable",
     "exact",
     "indefinite",
@@ -350,8 +351,15 @@ def _reads(dimension: str) -> BeforeValidator:
     return BeforeValidator(lambda value: bearable(value, dimension))
 
 
+def _whole(value: object) -> object:
+    if isinstance(value, bool):  # which counts as 0 or 1 elsewhere
+        raise QuantityError(f"is {value}; give a whole number")
+    return value
+
+
 # Annotated types for pydantic models: ``radius: Length = 2e-4``. The `Dimension` in the metadata
 # tells help texts the unit; bounds are added where used: ``Annotated[Force, Field(gt=0)]``.
+Whole = Annotated[int, BeforeValidator(_whole)]
 Number = Annotated[float, _reads("number"), DIMENSIONS["number"]]
 Length = Annotated[float, _reads("length"), DIMENSIONS["length"]]
 Time = Annotated[float, _reads("time"), DIMENSIONS["time"]]

@@ -81,6 +81,8 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "sample_drawn": (("sample",), "m", "how far the ends have been drawn out, at the times of samples"),
     "sample_z_a": (("sample",), "m", "z-displacement of side a at the times of samples"),
     "sample_z_b": (("sample",), "m", "z-displacement of side b at the times of samples"),
+    "sample_non_planarity": (("sample",), "1", "smallest over largest radius of gyration, at those times"),
+    "sample_torsion": (("sample",), "1", "mean |torsion| where the fiber is bent, times the radius, then"),
     **{
         f"charge_{name}": ((_CHARGE, *more), unit, f"{meaning}, while the fiber was closed")
         for name, more, unit, meaning in (
