@@ -119,7 +119,9 @@ def crossing(table: Table) -> list[float]:
         for sign in (1, -1):
             half = own[sign * own[:, 0] >= 0]
             half = half[np.argsort(np.abs(half[:, 0]))]
-            ratio = np.log(np.maximum(half[:, 2], 1e-9) / half[:, 1])
+            ratio = (
+                np.sqrt(half[:, 2] / half[:, 1]) - 1
+            )  # nearly straight, as twist energy grows as the square
             after = np.flatnonzero(ratio > 0)
             if len(after) and after[0] > 0:
                 k = int(after[0])
