@@ -3,7 +3,8 @@
 Seen along z, which is the direction of the cylinders, the strand lies as a surgeon lays it: a belt around
 both, the first throw upon its upper side, the second throw upon the first, and the two ends to the left and
 to the right. A throw is two helices about one axis along x. Turned by 180 degrees about y it is the same
-shape, the ends exchanged, and the mirror image (-b, -t) of a suture (b, t) is the mirror image z → -z, both to the bit.
+shape, the ends exchanged, and the mirror image (-b, -t) of a suture (b, t) is the mirror image z → -z: both
+to the bit.
 """
 
 from __future__ import annotations

@@ -77,8 +77,8 @@ class SkinForces(NamedTuple):
 
     normal, around, along (n_cylinders, n_edges) are the forces of each edge on the skin, per rest length
     [N/m]: into it, around it counterclockwise as seen from +z, and along z. total (n_cylinders, 3) is
-    their sum [N], spring (n_cylinders, 3) the force -k_s (w - w_0) [N], contact and stored the energies of contacts and
-    springs [J].
+    their sum [N], spring (n_cylinders, 3) the force -k_s (w - w_0) [N], contact and stored the energies of
+    contacts and springs [J].
     """
 
     normal: Floats

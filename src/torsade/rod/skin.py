@@ -43,8 +43,8 @@ class Skin(NamedTuple):
     node, fiber (n_cylinders,) say which node and which fiber without edges stand for each; rest
     (n_cylinders, 3) [m]. radius h_s [m], stiffness k_s [N/m], ground zeta [N s/m], drag over that between
     strands, friction coefficient and slip_speed v_0 [m/s]. The first count[0] rows of edge, cylinder,
-    direction (n, 2; from edge to axis), push (n,) [N] and weight (n,) [N s/m] are contacts; column (n_nodes, 3) and
-    small (n_cylinders, n_cylinders + 3) are scratch.
+    direction (n, 2; from edge to axis), push (n,) [N] and weight (n,) [N s/m] are contacts; column
+    (n_nodes, 3) and small (n_cylinders, n_cylinders + 3) are scratch.
     """
 
     node: Ints
