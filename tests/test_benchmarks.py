@@ -54,6 +54,7 @@ SCRIPTS = (
     "batteries",
     "battery_map",
     "charging",
+    "symmetric",
     "breaking",
     "third_break",
     "movies",
