@@ -52,6 +52,7 @@ SCRIPTS = (
     "torque_writhe",
     "tightening",
     "batteries",
+    "sutures",
     "battery_map",
     "charging",
     "symmetric",
