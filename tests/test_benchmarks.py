@@ -55,6 +55,7 @@ SCRIPTS = (
     "sutures",
     "battery_map",
     "charging",
+    "symmetric",
     "breaking",
     "third_break",
     "movies",
