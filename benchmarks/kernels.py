@@ -43,19 +43,13 @@ def _matrix(a, eta_A, contacts, fixed, factor):  # type: ignore[no-untyped-def]
     return factorise(factor)
 
 
-@numba.njit
-def _whole(job, a, m, bc, state, contacts, factor, control, dt, stages, g):  # type: ignore[no-untyped-def]
-    """An evaluation, named argument by argument: the compiler splices it in."""
-    return evaluate(job, a, m, bc, state, contacts, factor, control, dt, stages, g)
-
-
 def evaluation(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
     """Add the kernels of an evaluation, and the whole."""
     a, m, bc, state, control = motion.assembly, motion.model, motion.boundary, motion.state, motion.control
     g, contacts, factor, add = now.stages, now.near.contacts, now.factor, timed.add
     w = g.work
-    whole = (START, a, m, bc, state, contacts, factor, control, 0.0, ONE_STAGE, g)
-    add(WHOLE, _whole if timed.compiled else evaluate, *whole)
+    whole = (START, False, a, m, bc, state, contacts, factor, control, 0.0, ONE_STAGE, g)
+    add(WHOLE, evaluate, *whole)
     # Scratch for kernels that add to what they are given, so that what the others read stays as it is.
     force, torque, weight = np.zeros_like(w.force), np.zeros_like(w.torque), np.zeros_like(w.spin_weight)
     omega, v = g.omega.copy(), g.v.copy()

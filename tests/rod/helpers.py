@@ -160,7 +160,7 @@ class Probe:
     def rates(self, x: Floats, theta: Floats, tolerance: float = 1e-12) -> tuple[Floats, Floats, Floats]:
         """Node velocities, spins about the tangent, and rates of the material angles."""
         v, omega, angular = np.zeros_like(x), np.empty_like(theta), np.empty_like(theta)
-        status, _ = rates_module.rates(
+        status = rates_module.rates(
             self.a, self.m, self.bc, x, theta, self.tangent, self.state.reference_twist,
             self.contacts, self.factor, tolerance, v, omega, angular, self.work,
         )  # fmt: skip

@@ -35,14 +35,15 @@ from torsade.rod.elasticity import (
     stretch_energy,
     twist_energy,
 )
-from torsade.rod.factor import Factor, renewed, usable
+from torsade.rod.factor import Factor, serves
 from torsade.rod.kinematics import edge_geometry, reference_twist_change
 from torsade.rod.neighbours import edge_midpoints
 
 OK = 0
 LOOSE = 1
 UNSOLVED = 2
-DENSE = 3
+STALE = 3
+DENSE = 4
 
 
 class Work(NamedTuple):
@@ -237,24 +238,23 @@ def rates(
     omega: Floats,
     angular: Floats,
     w: Work,
-) -> tuple[int, Factor | tuple[()]]:
+) -> int:
     """Velocities v (n_nodes, 3), spins omega and rates of the material angles angular (n_edges,).
 
     v holds the starting guess. The material angle is measured from a director transported straight
     from the base tangent t0, which itself turns about t by -(t0 x t) . dt/dt / (1 + t0 . t).
-    Returns OK, LOOSE (see hold_bodies), UNSOLVED or DENSE (solve without a factor), and the factor,
-    renewed when it did not serve.
+    Returns OK, LOOSE (see hold_bodies), UNSOLVED, or STALE when contacts were found that the factor does
+    not serve; then only forces and contacts are known.
     """
     forces(a, m, bc, x, theta, base_tangent, base_twist, contacts, w)
+    if not serves(factor, contacts):
+        return STALE
     find_drag(a, m, x, w.length, w.mid, contacts)
     if hold_bodies(a, bc, contacts, w.held, w.component) != OK:
-        return LOOSE, factor
+        return LOOSE
     _ground_guess(a, bc, v, w.held, w.component)
-    factor = renewed(factor, a, contacts, w.mid, m.diameter)
-    if not usable(factor):
-        return DENSE, factor
     if not solve_mobility(a, m.eta_A, contacts, factor, w.force, w.held, tolerance, v, w.mobility):
-        return UNSOLVED, factor
+        return UNSOLVED
     _centre_floating(a, bc, v, w.held, w.component)
     torque, drag_torque, spin_weight = w.torque, w.drag_torque, w.spin_weight
     for e in range(omega.shape[0]):
@@ -266,7 +266,7 @@ def rates(
         angular[e] = torque[e] + drag_torque[e]
     solve_spin(a, m.eta_J, w.tangent, angular, spin_weight, bc.turned, bc.spin, omega, w.spin)
     _material_rate(a.edges, base_tangent, w.tangent, w.length, v, omega, angular)
-    return OK, factor
+    return OK
 
 
 def _material_rate(
@@ -351,4 +351,4 @@ def energies(a: Assembly, m: Model, contacts: Contacts, w: Work, out: Floats) ->
     out[3] = contact_energy(a, m, w.length, w.tangent, contacts)
 
 
-compile_kernels(__name__, splice=("rates",), owning=("rates",), plain=("rate_work",))
+compile_kernels(__name__, splice=("rates",), plain=("rate_work",))

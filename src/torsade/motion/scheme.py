@@ -252,7 +252,7 @@ def _response(radius: float, factor: float, g: Stages) -> float:
     return _size(mode_x, mode_theta) / (before * factor)
 
 
-def _prepare(job: Index, state: State, g: Stages) -> None:
+def _prepare(job: Index, dt: float, stages: Index, state: State, g: Stages) -> None:
     """Set up the running stages of a job."""
     if job == START:
         copy(state.v, g.v)
@@ -266,10 +266,17 @@ def _prepare(job: Index, state: State, g: Stages) -> None:
     if job == SPECTRUM:
         _seed_mode(g.x2, g.theta2)
         g.estimate[0] = 0.0
+    if job == STEP:
+        chebyshev_table(stages, dt, g.table)
+        for c in range(2):
+            g.ledger[0, c] = 0.0
+            g.ledger[1, c] = 0.0
+            g.ledger[3, c] = g.ledger[4, c]
 
 
 def evaluate(
     job: Index,
+    resumed: bool,
     a: Assembly,
     m: Model,
     bc: Boundary,
@@ -280,48 +287,44 @@ def evaluate(
     dt: float,
     stages: Index,
     g: Stages,
-) -> tuple[int, Factor | tuple[()]]:
-    """Evaluate the rates as often as a job needs, into g; returns their status and the newest factor.
+) -> int:
+    """Evaluate the rates as often as a job needs, into g; returns their status.
 
     START: at the present state. STEP: at every stage of a step dt [s] (one stage: explicit Euler); the
     last stage, in g.x and g.theta, is the result. SPECTRUM: at small displacements, to estimate the
     spectral radius by power iteration, always from the same direction; stretch waves of every length
-    decay at E/eta, so few iterations find it.
+    decay at E/eta, so few iterations find it. Resumed after the status STALE, a job goes on where it was.
     """
-    _prepare(job, state, g)
-    if job == STEP:
-        chebyshev_table(stages, dt, g.table)
-        for c in range(2):
-            g.ledger[0, c] = 0.0
-            g.ledger[1, c] = 0.0
-            g.ledger[3, c] = g.ledger[4, c]
+    first = int(g.estimate[1]) - 1 if resumed else 0
+    if not resumed:
+        _prepare(job, dt, stages, state, g)
     most = stages if job == STEP else (12 if job == SPECTRUM else 1)
     x, theta, v, omega, angular = g.x, g.theta, g.v, g.omega, g.angular
     tangent, ledger, estimate, work = g.tangent, g.ledger, g.estimate, g.work
     twist = state.reference_twist
-    for k in range(most):
+    for k in range(first, most):
         displaced = 0.0
-        if job == STEP:
+        if job == STEP and (k > first or not resumed):
             _next_stage(g.table[k + 1], state, g)
             _next_entry(g.table[k + 1], ledger)
         elif job == SPECTRUM:
             displaced = _perturb(state, control.radius, g)
             copy(g.v0, v)
-        status, factor = rates(
+        status = rates(
             a, m, bc, x, theta, tangent, twist, contacts, factor, control.solver_tolerance,
             v, omega, angular, work,
         )  # fmt: skip
         estimate[1] = k + 1.0
         if status != OK:
-            return status, factor
+            return status
         if job == SPECTRUM:
             previous = estimate[0]
             estimate[0] = _response(control.radius, displaced, g)
             if k > 1 and abs(estimate[0] - previous) < 0.05 * estimate[0]:
-                return OK, factor
+                return OK
         else:
             ledger[3, 0], ledger[3, 1] = powers(a, m, bc, v, omega, contacts, work)
-    return OK, factor
+    return OK
 
 
 def embedded_error(state: State, g: Stages, dt: float, radius: float) -> float:
@@ -344,6 +347,4 @@ def embedded_error(state: State, g: Stages, dt: float, radius: float) -> float:
     return largest
 
 
-compile_kernels(
-    __name__, inline=("copy", "copy_flat", "_set_row"), splice=("evaluate",), plain=("stage_work",)
-)
+compile_kernels(__name__, inline=("copy", "copy_flat", "_set_row"), plain=("stage_work",))

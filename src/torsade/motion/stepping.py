@@ -10,7 +10,7 @@ from torsade.assembly import Assembly, State
 from torsade.motion.ends import Boundary
 from torsade.motion.guard import largest_move
 from torsade.motion.near import Near, crossing, find_near, list_near
-from torsade.motion.rates import DENSE, LOOSE, OK
+from torsade.motion.rates import DENSE, LOOSE, OK, STALE
 from torsade.motion.scheme import (
     ONE_STAGE,
     SPECTRUM,
@@ -25,7 +25,7 @@ from torsade.motion.scheme import (
     stages_for,
 )
 from torsade.rod.contact import Model
-from torsade.rod.factor import Factor
+from torsade.rod.factor import Factor, renewed, usable
 from torsade.rod.kinematics import carry_directors, edge_geometry, spread_directors
 from torsade.rod.neighbours import edge_midpoints
 
@@ -202,7 +202,13 @@ def advance(
         if job == STEP:
             tried, last = _next_step(control, clock, until)
             stages, dt = stages_for(tried, clock.time[4]) if adaptive else (ONE_STAGE, tried)
-        status, factor = evaluate(job, a, m, bc, state, near.contacts, factor, control, dt, stages, g)
+        status, resumed = STALE, False
+        while status == STALE:
+            status = evaluate(job, resumed, a, m, bc, state, near.contacts, factor, control, dt, stages, g)
+            resumed = status == STALE
+            if resumed:
+                factor = renewed(factor, a, near.contacts, g.work.mid, m.diameter)
+                status = STALE if usable(factor) else DENSE
         clock.count[2] += int(g.estimate[1])
         if status == DENSE or (job == START and status != OK):
             verdict = _verdict(status)

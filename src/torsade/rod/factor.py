@@ -65,8 +65,10 @@ def no_factor() -> Factor:
     )  # fmt: skip
 
 
-def serves(factor: Factor, contacts: Contacts) -> bool:
-    """Whether the pattern holds all contacts found."""
+def serves(factor: Factor | tuple[()], contacts: Contacts) -> bool:
+    """Whether the pattern holds all contacts found; without a factor there is nothing to hold them."""
+    if len(factor) == 0:
+        return True
     if factor.kind[0] == UNMADE:
         return False
     known, row = factor.known, contacts.row
@@ -194,10 +196,8 @@ def pattern(a: Assembly, contacts: Contacts, mid: Floats, diameter: float, worth
 def renewed(
     factor: Factor | tuple[()], a: Assembly, contacts: Contacts, mid: Floats, diameter: float
 ) -> Factor | tuple[()]:
-    """The factor if it serves, else one for a new pattern; the empty tuple stays what it is."""
+    """A factor for a new pattern; the empty tuple stays what it is."""
     if len(factor) == 0:
-        return factor
-    if serves(factor, contacts):
         return factor
     return pattern(a, contacts, mid, diameter, WORTH)
 
