@@ -22,7 +22,7 @@ from torsade.motion.scheme import ONE_STAGE, START, embedded_error, evaluate
 from torsade.rod.contact import add_contact_forces, add_drag_torques, find_contacts, find_drag
 from torsade.rod.damping import solve_spin
 from torsade.rod.elasticity import add_elastic_forces, hinge_twist
-from torsade.rod.factor import WORTH, assemble, factorise, pattern, substitute
+from torsade.rod.factor import WORTH, assemble, eliminate, pattern, substitute
 from torsade.rod.kinematics import (
     carry_directors,
     edge_geometry,
@@ -37,10 +37,10 @@ NUMBERS = (embedded_error, first_crossing, largest_move)
 
 
 @numba.njit
-def _matrix(a, eta_A, contacts, fixed, factor):  # type: ignore[no-untyped-def]
+def _matrix(a, eta_A, contacts, fixed, factor, v):  # type: ignore[no-untyped-def]
     """Assemble and factorise: factors replace the matrix, so one cannot be repeated without the other."""
     assemble(a, eta_A, contacts, fixed, factor)
-    return factorise(factor)
+    return eliminate(factor, v)
 
 
 def evaluation(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
@@ -69,7 +69,7 @@ def evaluation(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
     add("spin", solve_spin, a, m.eta_J, w.tangent, w.torque, w.spin_weight, bc.turned, bc.spin, omega, w.spin)
     if factor.tape.size:
         add(ASSEMBLED, assemble, a, m.eta_A, contacts, w.held, factor)
-        add(FACTORISED, _matrix, a, m.eta_A, contacts, w.held, factor)
+        add(FACTORISED, _matrix, a, m.eta_A, contacts, w.held, factor, v)
         add("substituted", substitute, factor, v)
 
 

@@ -17,7 +17,7 @@ from torsade._compile import compile_kernels
 from torsade.arrays import Bools, Floats, Index
 from torsade.assembly import Assembly
 from torsade.rod.contact import Contacts
-from torsade.rod.factor import HELD, Factor, assemble, factorise, substitute
+from torsade.rod.factor import HELD, Factor, assemble, eliminate, substitute
 
 
 class MobilityWork(NamedTuple):
@@ -181,7 +181,7 @@ def solve_mobility(
         for c in range(3):
             prescribed[i, c] = v[i, c]
             v[i, c] = d * v[i, c] if fixed[i] else force[i, c]
-    if not factorise(factor):
+    if not eliminate(factor, v):
         return False
     substitute(factor, v)
     for i in range(v.shape[0]):

@@ -251,20 +251,29 @@ def assemble(a: Assembly, eta_A: float, contacts: Contacts, fixed: Bools, factor
             diagonal[i] *= HELD
 
 
-def factorise(factor: Factor) -> bool:
-    """L D L^T in place: value becomes L, inverse 1/D; False if the matrix is not positive definite."""
+def eliminate(factor: Factor, v: Floats) -> bool:
+    """L D L^T in place: value becomes L, inverse 1/D; and v (n_nodes, 3), the right side, L^-1 v.
+
+    False if the matrix is not positive definite.
+    """
     order, start, row, tape = factor.order, factor.start, factor.row, factor.tape
     value, diagonal, inverse = factor.value, factor.diagonal, factor.inverse
     t = 0
     for k in range(order.shape[0]):
-        d = diagonal[order[k]]
+        i = order[k]
+        d = diagonal[i]
         if not d > 0.0:
             return False
         s = 1.0 / d
-        inverse[order[k]] = s
+        inverse[i] = s
+        v0, v1, v2 = v[i, 0], v[i, 1], v[i, 2]
         for p in range(start[k], start[k + 1]):
+            j = row[p]
             l = value[p] * s
-            diagonal[row[p]] -= l * value[p]
+            diagonal[j] -= l * value[p]
+            v[j, 0] -= l * v0
+            v[j, 1] -= l * v1
+            v[j, 2] -= l * v2
             for q in range(p + 1, start[k + 1]):
                 value[tape[t]] -= l * value[q]
                 t += 1
@@ -273,19 +282,9 @@ def factorise(factor: Factor) -> bool:
 
 
 def substitute(factor: Factor, v: Floats) -> None:
-    """Replace the right side v (n_nodes, 3) by the solution."""
+    """Replace what `eliminate` left in v (n_nodes, 3) by the solution."""
     order, start, row, value, inverse = factor.order, factor.start, factor.row, factor.value, factor.inverse
-    n = order.shape[0]
-    for k in range(n):
-        i = order[k]
-        v0, v1, v2 = v[i, 0], v[i, 1], v[i, 2]
-        for p in range(start[k], start[k + 1]):
-            j = row[p]
-            l = value[p]
-            v[j, 0] -= l * v0
-            v[j, 1] -= l * v1
-            v[j, 2] -= l * v2
-    for k in range(n - 1, -1, -1):
+    for k in range(order.shape[0] - 1, -1, -1):
         i = order[k]
         s = inverse[i]
         v0, v1, v2 = s * v[i, 0], s * v[i, 1], s * v[i, 2]
