@@ -155,7 +155,7 @@ def capture(motion: Motion) -> Moment:
     guess = motion.state.v.copy()
     motion.advance(motion.time + 1.0, 1)
     state, g = motion.state, scheme.stage_work(a)
-    edge_geometry(state.x, a.edges, g.length, g.tangent)
+    edge_geometry(a, state.x, g.length, g.tangent)
     edge_midpoints(state.x, a.edges, g.mid)
     beside = near.find_near(a, m, control, g.mid, g.length)
     g.x[:], g.theta[:], g.v[:] = state.x, state.theta, state.v

@@ -53,13 +53,13 @@ def evaluation(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
     # Scratch for kernels that add to what they are given, so that what the others read stays as it is.
     force, torque, weight = np.zeros_like(w.force), np.zeros_like(w.torque), np.zeros_like(w.spin_weight)
     omega, v = g.omega.copy(), g.v.copy()
-    add("geometry", edge_geometry, g.x, a.edges, w.length, w.tangent)
+    add("geometry", edge_geometry, a, g.x, w.length, w.tangent)
     add("geometry", edge_midpoints, g.x, a.edges, w.mid)
-    add("reference twist", reference_twist_change, g.tangent, w.tangent, a.hinges, w.change)
+    add("reference twist", reference_twist_change, a, g.tangent, w.tangent, w.change)
     add("reference twist", hinge_twist, g.theta, state.reference_twist, a.hinges, w.m)
     add(
         "elastic forces", add_elastic_forces, a, m.EA, m.B, m.C, m.bend_present, w.length, w.tangent, w.m,
-        force, torque,
+        w.edge_force, force, torque,
     )  # fmt: skip
     add("contacts found", find_contacts, m, w.mid, contacts)
     add("contact forces", add_contact_forces, a, m, w.length, w.tangent, contacts, force)

@@ -12,5 +12,14 @@ Bools = NDArray[np.bool_]
 Index = int | np.int64
 """A number of a node, edge, hinge or fiber, counted or read from an array."""
 
+ONE = np.uintp(1)
+"""To count on from an index known not to be negative: compiled code need not ask, and works on many at once."""
+
+
+def columns(n: int) -> Floats:
+    """Room for n vectors (n, 3), one component after the other: compiled loops over all of them are faster."""
+    return np.empty((n, 3), order="F")
+
+
 Slots = NDArray[np.uint32]
 """Places in an array, counted from its start: compiled code need not ask whether one is negative."""

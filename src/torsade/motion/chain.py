@@ -217,7 +217,7 @@ class Chain(NamedTuple):
         edge = np.where(self.spheres[:, None], turned, shape.edge + change[:, :3])
         after = _directions(edge)[1]
         twist = np.empty(len(self.assembly.hinges))
-        kinematics.reference_twist_change(tangent, after, self.assembly.hinges, twist)
+        kinematics.reference_twist_change(self.assembly, tangent, after, twist)
         return shape._replace(
             edge=edge, theta=shape.theta + change[:, 3], reference_twist=shape.reference_twist + twist
         )

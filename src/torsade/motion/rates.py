@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from torsade._compile import compile_kernels
-from torsade.arrays import Bools, Floats, Index, Ints
+from torsade.arrays import ONE, Bools, Floats, Index, Ints, columns
 from torsade.assembly import Assembly
 from torsade.motion.ends import Boundary
 from torsade.rod.contact import (
@@ -57,6 +57,7 @@ class Work(NamedTuple):
     spin_weight: Floats
     m: Floats
     change: Floats
+    edge_force: Floats
     force: Floats
     held: Bools
     component: Ints
@@ -71,13 +72,14 @@ def rate_work(a: Assembly) -> Work:
     n_hinges = a.hinges.shape[0]
     return Work(
         np.empty(n_edges),
-        np.empty((n_edges, 3)),
+        columns(n_edges),
         np.empty((n_edges, 3)),
         np.empty(n_edges),
         np.empty(n_edges),
         np.empty(n_edges),
         np.empty(n_hinges),
         np.empty(n_hinges),
+        columns(n_edges),
         np.empty((n, 3)),
         np.empty(n, np.bool_),
         np.empty(a.closed.shape[0], np.int64),
@@ -104,8 +106,8 @@ def forces(
     """
     length, tangent, twist, force, torque = w.length, w.tangent, w.change, w.force, w.torque
     external, moment = bc.force, bc.torque
-    edge_geometry(x, a.edges, length, tangent)
-    reference_twist_change(base_tangent, tangent, a.hinges, twist)
+    edge_geometry(a, x, length, tangent)
+    reference_twist_change(a, base_tangent, tangent, twist)
     for k in range(twist.shape[0]):
         twist[k] += base_twist[k]
     hinge_twist(theta, twist, a.hinges, w.m)
@@ -114,7 +116,9 @@ def forces(
             force[i, c] = external[i, c]
     for e in range(torque.shape[0]):
         torque[e] = moment[e]
-    add_elastic_forces(a, m.EA, m.B, m.C, m.bend_present, length, tangent, w.m, force, torque)
+    add_elastic_forces(
+        a, m.EA, m.B, m.C, m.bend_present, length, tangent, w.m, w.edge_force, force, torque
+    )
     edge_midpoints(x, a.edges, w.mid)
     find_contacts(m, w.mid, contacts)
     add_contact_forces(a, m, length, tangent, contacts, force)
@@ -265,24 +269,37 @@ def rates(
     for e in range(omega.shape[0]):
         angular[e] = torque[e] + drag_torque[e]
     solve_spin(a, m.eta_J, w.tangent, angular, spin_weight, bc.turned, bc.spin, omega, w.spin)
-    _material_rate(a.edges, base_tangent, w.tangent, w.length, v, omega, angular)
+    _material_rates(a, base_tangent, w.tangent, w.length, v, omega, angular)
     return OK
 
 
-def _material_rate(
-    edges: Ints, t0: Floats, t: Floats, length: Floats, v: Floats, omega: Floats, angular: Floats
+def _material_rates(
+    a: Assembly, t0: Floats, t: Floats, length: Floats, v: Floats, omega: Floats, angular: Floats
 ) -> None:
-    """Rate of the material angle: the spin, corrected for the turning of the reference director."""
-    for e in range(omega.shape[0]):
-        i = edges[e, 0]
-        j = edges[e, 1]
-        triple = (
-            (t0[e, 1] * t[e, 2] - t0[e, 2] * t[e, 1]) * (v[j, 0] - v[i, 0])
-            + (t0[e, 2] * t[e, 0] - t0[e, 0] * t[e, 2]) * (v[j, 1] - v[i, 1])
-            + (t0[e, 0] * t[e, 1] - t0[e, 1] * t[e, 0]) * (v[j, 2] - v[i, 2])
-        )
-        cosine = t0[e, 0] * t[e, 0] + t0[e, 1] * t[e, 1] + t0[e, 2] * t[e, 2]
-        angular[e] = omega[e] + triple / (length[e] * (1.0 + cosine))
+    """Rates of the material angles: spins, corrected for the turning of the reference directors."""
+    node_start, edge_start = a.node_start, a.edge_start
+    for f in range(edge_start.shape[0] - 1):
+        n = node_start[f + 1] - node_start[f]
+        for k in range(n - 1):
+            e, i = np.uintp(edge_start[f] + k), np.uintp(node_start[f] + k)
+            angular[e] = _material_rate(t0, t, length, v, omega, e, i, i + ONE)
+        if edge_start[f + 1] - edge_start[f] == n:
+            e, i = edge_start[f + 1] - 1, node_start[f + 1] - 1
+            angular[e] = _material_rate(t0, t, length, v, omega, e, i, node_start[f])
+
+
+def _material_rate(
+    t0: Floats, t: Floats, length: Floats, v: Floats, omega: Floats, e: Index, i: Index, j: Index
+) -> float:
+    """Rate of the material angle of edge e from node i to node j."""
+    triple = (
+        (t0[e, 1] * t[e, 2] - t0[e, 2] * t[e, 1]) * (v[j, 0] - v[i, 0])
+        + (t0[e, 2] * t[e, 0] - t0[e, 0] * t[e, 2]) * (v[j, 1] - v[i, 1])
+        + (t0[e, 0] * t[e, 1] - t0[e, 1] * t[e, 0]) * (v[j, 2] - v[i, 2])
+    )
+    cosine = t0[e, 0] * t[e, 0] + t0[e, 1] * t[e, 1] + t0[e, 2] * t[e, 2]
+    rate: float = omega[e] + triple / (length[e] * (1.0 + cosine))
+    return rate
 
 
 def powers(
@@ -300,15 +317,19 @@ def powers(
     dissipated = 0.0
     moved = False
     for i in range(v.shape[0]):
-        for c in range(3):
-            external += v[i, c] * pull[i, c]
-            dissipated += 0.0 if held[i] else v[i, c] * force[i, c]
-            moved = moved or (held[i] and v[i, c] != 0.0)
+        vx, vy, vz = v[i, 0], v[i, 1], v[i, 2]
+        external += vx * pull[i, 0] + vy * pull[i, 1] + vz * pull[i, 2]
+        if held[i]:
+            moved = moved or vx != 0.0 or vy != 0.0 or vz != 0.0
+        else:
+            dissipated += vx * force[i, 0] + vy * force[i, 1] + vz * force[i, 2]
     spun = False
     for e in range(omega.shape[0]):
         external += omega[e] * moment[e]
-        dissipated += 0.0 if turned[e] else omega[e] * torque[e]
-        spun = spun or (turned[e] and omega[e] != 0.0)
+        if turned[e]:
+            spun = spun or omega[e] != 0.0
+        else:
+            dissipated += omega[e] * torque[e]
     if moved:
         drag = w.mobility.q
         apply_drag(a, m.eta_A, contacts, v, drag)
@@ -351,4 +372,4 @@ def energies(a: Assembly, m: Model, contacts: Contacts, w: Work, out: Floats) ->
     out[3] = contact_energy(a, m, w.length, w.tangent, contacts)
 
 
-compile_kernels(__name__, splice=("rates",), plain=("rate_work",))
+compile_kernels(__name__, inline=("_material_rate",), splice=("rates",), plain=("rate_work",))

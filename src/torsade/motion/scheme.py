@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from torsade._compile import compile_kernels
-from torsade.arrays import Floats, Index
+from torsade.arrays import Floats, Index, columns
 from torsade.assembly import Assembly, State
 from torsade.motion.ends import Boundary
 from torsade.motion.rates import OK, Work, powers, rate_work, rates
@@ -98,7 +98,7 @@ def stage_work(a: Assembly) -> Stages:
         np.empty((n, 3)),
         np.empty(n_edges),
         np.empty(n_edges),
-        np.empty((n_edges, 3)),
+        columns(n_edges),
         np.empty(n_edges),
         np.empty((n_edges, 3)),
         np.empty((n, 3)),
@@ -181,15 +181,15 @@ def _next_stage(weights: Floats, state: State, g: Stages) -> None:
     """Make (g.x, g.theta) the next stage, and the one before it (g.x1, g.theta1)."""
     c0, c1, c2, cv, cv0 = weights[0], weights[1], weights[2], weights[3], weights[4]
     x0, x, x1, x2, v, v0 = state.x, g.x, g.x1, g.x2, g.v, g.v0
+    copy(x1, x2)
+    copy(x, x1)
     for i in range(x.shape[0]):
         for c in range(3):
-            x2[i, c] = x1[i, c]
-            x1[i, c] = x[i, c]
             x[i, c] = c0 * x0[i, c] + c1 * x1[i, c] + c2 * x2[i, c] + cv * v[i, c] + cv0 * v0[i, c]
     p0, p, p1, p2, r, r0 = state.theta, g.theta, g.theta1, g.theta2, g.angular, g.angular0
+    copy_flat(p1, p2)
+    copy_flat(p, p1)
     for e in range(p.shape[0]):
-        p2[e] = p1[e]
-        p1[e] = p[e]
         p[e] = c0 * p0[e] + c1 * p1[e] + c2 * p2[e] + cv * r[e] + cv0 * r0[e]
 
 

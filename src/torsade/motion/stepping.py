@@ -179,7 +179,7 @@ def advance(
     (strands would pass through each other), STUCK (no step is short enough), UNSOLVABLE, CROWDED (contacts
     couple so much that solving without a factor is faster). The factor is one not made yet, or ().
     """
-    edge_geometry(state.x, a.edges, g.length, g.tangent)
+    edge_geometry(a, state.x, g.length, g.tangent)
     edge_midpoints(state.x, a.edges, g.mid)
     if until <= clock.time[0]:
         return REACHED

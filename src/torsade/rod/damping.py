@@ -177,10 +177,13 @@ def solve_mobility(
     assemble(a, eta_A, contacts, fixed, factor)
     diagonal, prescribed = factor.diagonal, work.r
     for i in range(v.shape[0]):
-        d = diagonal[i]
         for c in range(3):
             prescribed[i, c] = v[i, c]
-            v[i, c] = d * v[i, c] if fixed[i] else force[i, c]
+            v[i, c] = force[i, c]
+    for i in range(v.shape[0]):
+        if fixed[i]:
+            for c in range(3):
+                v[i, c] = diagonal[i] * prescribed[i, c]
     if not eliminate(factor, v):
         return False
     substitute(factor, v)

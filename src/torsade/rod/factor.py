@@ -38,7 +38,8 @@ class Factor(NamedTuple):
     are eliminated; column k, that of order[k], has rows row[start[k]:start[k + 1]], in the order of
     elimination. tape are the slots that factorising updates, in turn. edge_slot (n_edges,) couples the
     nodes of an edge, pair_slot (n_pairs, 4) start and end of one edge with start and end of the other, for
-    known (n_pairs,) pairs. value holds the entries below the diagonal; diagonal, inverse (n,) are by node.
+    known (n_pairs,) pairs. value holds the entries below the diagonal; diagonal, inverse (n,) are by node. inner
+    and inner_diagonal are those of internal damping with eta A = 1, which never change [1/m].
     """
 
     kind: Ints
@@ -52,6 +53,8 @@ class Factor(NamedTuple):
     value: Floats
     diagonal: Floats
     inverse: Floats
+    inner: Floats
+    inner_diagonal: Floats
 
 
 def no_factor() -> Factor:
@@ -61,7 +64,7 @@ def no_factor() -> Factor:
     values = np.zeros(0)
     return Factor(
         np.zeros(1, np.int64), none, none, slots, slots, slots, np.zeros((0, 4), np.uint32),
-        np.zeros(0, np.bool_), values, values, values,
+        np.zeros(0, np.bool_), values, values, values, values, values,
     )  # fmt: skip
 
 
@@ -187,9 +190,16 @@ def pattern(a: Assembly, contacts: Contacts, mid: Floats, diameter: float, worth
     pair_slot = np.empty((contacts.pairs.shape[0], 4), np.uint32)
     if kind[0] == MADE:
         _place(a.edges, contacts.pairs, known, rank, start, row, edge_slot, pair_slot)
+    inner, inner_diagonal = np.zeros(row.shape[0]), np.zeros(n)
+    for e in range(edge_slot.shape[0]):
+        w = 1.0 / a.rest_length[e]
+        inner_diagonal[a.edges[e, 0]] += w
+        inner_diagonal[a.edges[e, 1]] += w
+        if kind[0] == MADE:
+            inner[edge_slot[e]] -= w
     return Factor(
         kind, order, start, row, _tape(start, row, rank), edge_slot, pair_slot, known,
-        np.empty(row.shape[0]), np.empty(n), np.empty(n),
+        np.empty(row.shape[0]), np.empty(n), np.empty(n), inner, inner_diagonal,
     )  # fmt: skip
 
 
@@ -213,17 +223,12 @@ def usable(factor: Factor | tuple[()]) -> bool:
 def assemble(a: Assembly, eta_A: float, contacts: Contacts, fixed: Bools, factor: Factor) -> None:
     """The mobility matrix of internal damping and collision drag, with fixed (n_nodes,) nodes held."""
     value, diagonal, edge_slot, pair_slot = factor.value, factor.diagonal, factor.edge_slot, factor.pair_slot
-    edges, rest_length, touching = a.edges, a.rest_length, contacts.edges
+    edges, touching, inner, inner_diagonal = a.edges, contacts.edges, factor.inner, factor.inner_diagonal
     nodes, weight, coupled = contacts.drag_nodes, contacts.drag_weight, contacts.drag_contact
     for i in range(diagonal.shape[0]):
-        diagonal[i] = 0.0
+        diagonal[i] = eta_A * inner_diagonal[i]
     for s in range(value.shape[0]):
-        value[s] = 0.0
-    for e in range(edges.shape[0]):
-        w = eta_A / rest_length[e]
-        diagonal[edges[e, 0]] += w
-        diagonal[edges[e, 1]] += w
-        value[edge_slot[e]] -= w
+        value[s] = eta_A * inner[s]
     for k in range(contacts.count[1]):
         i0 = nodes[k, 0]
         i1 = nodes[k, 1]
