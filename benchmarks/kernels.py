@@ -84,7 +84,7 @@ def step(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
     add("guard against crossing", largest_move, state.x, moved)
     add(
         "guard against crossing", first_crossing, a, near.apart, near.guarded, near.count[0], state.x,
-        moved, g.length, g.mid,
+        moved, g.length, g.mid, largest_move(state.x, moved),
     )  # fmt: skip
     add("work and dissipation", powers, a, m, bc, g.v, g.omega, near.contacts, w)
     add("directors", carry_directors, a.edge_start, director, g.tangent, w.tangent)

@@ -38,8 +38,12 @@ def present() -> dict[str, Any]:
 
 def versions() -> dict[str, str]:
     """Of what results are computed and stored with."""
-    packages = {name: version(name) for name in LIBRARIES}
-    return {"torsade": __version__, "python": platform.python_version()} | packages
+    return {"torsade": __version__, "python": platform.python_version()} | _packages()
+
+
+@lru_cache(maxsize=1)
+def _packages() -> dict[str, str]:
+    return {name: version(name) for name in LIBRARIES}
 
 
 @lru_cache(maxsize=1)

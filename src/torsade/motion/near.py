@@ -94,7 +94,7 @@ def crossing(
         pairs = neighbour_pairs(a, mid, reach, NEXT, 0.0)
         rows = np.empty(pairs.shape[0], np.int64)
         count = near_rows(pairs, mid, reach, rows)
-    k = first_crossing(a, pairs, rows, count, x0, x1, length, mid)
+    k = first_crossing(a, pairs, rows, count, x0, x1, length, mid, move)
     return (pairs[k, 0], pairs[k, 1]) if k >= 0 else (-1, -1)
 
 

@@ -22,8 +22,8 @@ from torsade.rod.contact import (
 from torsade.rod.damping import (
     MobilityWork,
     SpinWork,
-    apply_drag,
     mobility_work,
+    power_of_drag,
     solve_mobility,
     solve_spin,
     spin_work,
@@ -116,9 +116,7 @@ def forces(
             force[i, c] = external[i, c]
     for e in range(torque.shape[0]):
         torque[e] = moment[e]
-    add_elastic_forces(
-        a, m.EA, m.B, m.C, m.bend_present, length, tangent, w.m, w.edge_force, force, torque
-    )
+    add_elastic_forces(a, m.EA, m.B, m.C, m.bend_present, length, tangent, w.m, w.edge_force, force, torque)
     edge_midpoints(x, a.edges, w.mid)
     find_contacts(m, w.mid, contacts)
     add_contact_forces(a, m, length, tangent, contacts, force)
@@ -279,13 +277,14 @@ def _material_rates(
     """Rates of the material angles: spins, corrected for the turning of the reference directors."""
     node_start, edge_start = a.node_start, a.edge_start
     for f in range(edge_start.shape[0] - 1):
-        n = node_start[f + 1] - node_start[f]
+        node, edge = node_start[f], edge_start[f]
+        n = node_start[f + 1] - node
         for k in range(n - 1):
-            e, i = np.uintp(edge_start[f] + k), np.uintp(node_start[f] + k)
+            e, i = np.uintp(edge + k), np.uintp(node + k)
             angular[e] = _material_rate(t0, t, length, v, omega, e, i, i + ONE)
-        if edge_start[f + 1] - edge_start[f] == n:
-            e, i = edge_start[f + 1] - 1, node_start[f + 1] - 1
-            angular[e] = _material_rate(t0, t, length, v, omega, e, i, node_start[f])
+        if edge_start[f + 1] - edge == n:
+            last = edge + n - 1
+            angular[last] = _material_rate(t0, t, length, v, omega, last, node + n - 1, node)
 
 
 def _material_rate(
@@ -331,13 +330,12 @@ def powers(
         else:
             dissipated += omega[e] * torque[e]
     if moved:
-        drag = w.mobility.q
-        apply_drag(a, m.eta_A, contacts, v, drag)
+        lost = power_of_drag(a, m.eta_A, contacts, v, held)
+        dissipated += lost
+        external += lost
         for i in range(v.shape[0]):
-            for c in range(3):
-                lost = v[i, c] * drag[i, c] if held[i] else 0.0
-                dissipated += lost
-                external += lost - v[i, c] * force[i, c] if held[i] else 0.0
+            if held[i]:
+                external -= v[i, 0] * force[i, 0] + v[i, 1] * force[i, 1] + v[i, 2] * force[i, 2]
     if spun:
         lost = _turning_power(a, m.eta_J, omega, turned, w)
         dissipated += lost

@@ -110,11 +110,14 @@ def stage_work(a: Assembly) -> Stages:
     )
 
 
+def flat(x: Floats) -> Floats:
+    """All numbers of an array (n, 3) in a row, not copied."""
+    return x.reshape(x.size)
+
+
 def copy(source: Floats, out: Floats) -> None:
     """out = source, arrays (n, 3)."""
-    for i in range(out.shape[0]):
-        for c in range(3):
-            out[i, c] = source[i, c]
+    copy_flat(flat(source), flat(out))
 
 
 def copy_flat(source: Floats, out: Floats) -> None:
@@ -180,12 +183,11 @@ def chebyshev_table(stages: Index, dt: float, table: Floats) -> None:
 def _next_stage(weights: Floats, state: State, g: Stages) -> None:
     """Make (g.x, g.theta) the next stage, and the one before it (g.x1, g.theta1)."""
     c0, c1, c2, cv, cv0 = weights[0], weights[1], weights[2], weights[3], weights[4]
-    x0, x, x1, x2, v, v0 = state.x, g.x, g.x1, g.x2, g.v, g.v0
-    copy(x1, x2)
-    copy(x, x1)
+    x0, x, x1, x2, v, v0 = flat(state.x), flat(g.x), flat(g.x1), flat(g.x2), flat(g.v), flat(g.v0)
+    copy_flat(x1, x2)
+    copy_flat(x, x1)
     for i in range(x.shape[0]):
-        for c in range(3):
-            x[i, c] = c0 * x0[i, c] + c1 * x1[i, c] + c2 * x2[i, c] + cv * v[i, c] + cv0 * v0[i, c]
+        x[i] = c0 * x0[i] + c1 * x1[i] + c2 * x2[i] + cv * v[i] + cv0 * v0[i]
     p0, p, p1, p2, r, r0 = state.theta, g.theta, g.theta1, g.theta2, g.angular, g.angular0
     copy_flat(p1, p2)
     copy_flat(p, p1)
@@ -347,4 +349,4 @@ def embedded_error(state: State, g: Stages, dt: float, radius: float) -> float:
     return largest
 
 
-compile_kernels(__name__, inline=("copy", "copy_flat", "_set_row"), plain=("stage_work",))
+compile_kernels(__name__, inline=("copy", "copy_flat", "_set_row"), splice=("flat",), plain=("stage_work",))

@@ -62,7 +62,7 @@ def _commit(a: Assembly, state: State, g: Stages, now: float, clock: Clock) -> N
     clock.count[4] += 1
     carry_directors(a.edge_start, state.director, g.tangent, g.work.tangent)
     copy_flat(g.work.change, state.reference_twist)
-    copy(g.work.tangent, g.tangent)
+    copy(g.work.tangent.T, g.tangent.T)
     copy_flat(g.work.length, g.length)
     copy(g.work.mid, g.mid)
     copy(g.x, state.x)

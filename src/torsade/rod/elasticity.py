@@ -25,7 +25,7 @@ from torsade.assembly import Assembly
 def hinge_twist(theta: Floats, reference_twist: Floats, hinges: Ints, m: Floats) -> None:
     """Twist angle m (n_hinges,) [rad] of every hinge from material angles and reference twist."""
     for k in range(hinges.shape[0]):
-        m[k] = theta[hinges[k, 1]] - theta[hinges[k, 0]] + reference_twist[k]
+        m[k] = theta[np.uintp(hinges[k, 1])] - theta[np.uintp(hinges[k, 0])] + reference_twist[k]
 
 
 def stretch_energy(a: Assembly, EA: float, length: Floats) -> float:
@@ -72,8 +72,8 @@ def _joint(
 ) -> tuple[float, float, float]:  # fmt: skip
     """How hinge k bends, turns and eases the edges p and q that it joins.
 
-    With c = t_p . t_q, bend = -4 B/(1 + c)^2 lbar and turn = C m/(1 + c) lbar; ease, where lbar is the present
-    length, is what bending gains from longer edges.
+    With c = t_p . t_q, bend = -4 B/(1 + c)^2 lbar and turn = C m/(1 + c) lbar; ease, where lbar is the
+    present length, is what bending gains from longer edges.
     """
     cosine = t[p, 0] * t[q, 0] + t[p, 1] * t[q, 1] + t[p, 2] * t[q, 2]
     s = 1.0 / (1.0 + cosine)
@@ -90,7 +90,8 @@ def _set_edge_force(
 ) -> None:  # fmt: skip
     """g[e] = dE/de of an edge between the edges p and q, with what the hinges to either side do.
 
-    With w = bend_p t_p + bend_q t_q and u = turn_q t_q - turn_p t_p it is stretch t + (w - (w . t) t + t x u)/|e|.
+    With w = bend_p t_p + bend_q t_q and u = turn_q t_q - turn_p t_p it is
+    stretch t + (w - (w . t) t + t x u)/|e|.
     """
     tx, ty, tz = t[e, 0], t[e, 1], t[e, 2]
     px, py, pz = t[p, 0], t[p, 1], t[p, 2]
@@ -156,19 +157,22 @@ def add_elastic_forces(
     with its edges by kb/2 . (de_a/|e_a| + de_b/|e_b|). edge_force (n_edges, 3) [N] gets dE/de, with which an
     edge pulls its first node forward and its second one back.
     """
-    edges, hinges, hinge_length = a.edges, a.hinges, a.hinge_length
-    for f in range(a.closed.shape[0]):
+    hinges, hinge_length, node_start, edge_start = a.hinges, a.hinge_length, a.node_start, a.edge_start
+    for f in range(edge_start.shape[0] - 1):
         _edge_forces(a, f, EA, B, C, present, length, tangent, m, edge_force)
-    for e in range(edges.shape[0]):
-        i = edges[e, 0]
-        j = edges[e, 1]
+        node, edge, n = node_start[f], edge_start[f], edge_start[f + 1] - edge_start[f]
+        for k in range(1, n):
+            i, e = np.uintp(node + k), np.uintp(edge + k)
+            for c in range(3):
+                force[i, c] += edge_force[e, c] - edge_force[e - ONE, c]
+        end = node + n if node + n < node_start[f + 1] else node
         for c in range(3):
-            force[i, c] += edge_force[e, c]
-            force[j, c] -= edge_force[e, c]
+            force[node, c] += edge_force[edge, c]
+            force[end, c] -= edge_force[edge + n - 1, c]
     for k in range(hinges.shape[0]):
         moment = C * m[k] / hinge_length[k]
-        torque[hinges[k, 0]] += moment
-        torque[hinges[k, 1]] -= moment
+        torque[np.uintp(hinges[k, 0])] += moment
+        torque[np.uintp(hinges[k, 1])] -= moment
 
 
 def hinge_curvature(a: Assembly, tangent: Floats, kappa: Floats) -> None:

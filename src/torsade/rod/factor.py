@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from torsade._compile import compile_kernels
-from torsade.arrays import Bools, Floats, Index, Ints, Slots
+from torsade.arrays import ONE, Bools, Floats, Index, Ints, Slots
 from torsade.assembly import Assembly
 from torsade.rod.contact import Contacts
 from torsade.rod.ordering import couplings, minimum_degree
@@ -38,8 +38,8 @@ class Factor(NamedTuple):
     are eliminated; column k, that of order[k], has rows row[start[k]:start[k + 1]], in the order of
     elimination. tape are the slots that factorising updates, in turn. edge_slot (n_edges,) couples the
     nodes of an edge, pair_slot (n_pairs, 4) start and end of one edge with start and end of the other, for
-    known (n_pairs,) pairs. value holds the entries below the diagonal; diagonal, inverse (n,) are by node. inner
-    and inner_diagonal are those of internal damping with eta A = 1, which never change [1/m].
+    known (n_pairs,) pairs. value holds the entries below the diagonal; diagonal, inverse (n,) are by node.
+    inner and inner_diagonal are the entries of internal damping with eta A = 1, which never change [1/m].
     """
 
     kind: Ints
@@ -224,19 +224,24 @@ def assemble(a: Assembly, eta_A: float, contacts: Contacts, fixed: Bools, factor
     """The mobility matrix of internal damping and collision drag, with fixed (n_nodes,) nodes held."""
     value, diagonal, edge_slot, pair_slot = factor.value, factor.diagonal, factor.edge_slot, factor.pair_slot
     edges, touching, inner, inner_diagonal = a.edges, contacts.edges, factor.inner, factor.inner_diagonal
-    nodes, weight, coupled = contacts.drag_nodes, contacts.drag_weight, contacts.drag_contact
+    nodes, weight, coupled, rows = (
+        contacts.drag_nodes,
+        contacts.drag_weight,
+        contacts.drag_contact,
+        contacts.row,
+    )
     for i in range(diagonal.shape[0]):
         diagonal[i] = eta_A * inner_diagonal[i]
     for s in range(value.shape[0]):
         value[s] = eta_A * inner[s]
     for k in range(contacts.count[1]):
-        i0 = nodes[k, 0]
-        i1 = nodes[k, 1]
-        j0 = nodes[k, 2]
-        j1 = nodes[k, 3]
+        i0 = np.uintp(nodes[k, 0])
+        i1 = np.uintp(nodes[k, 1])
+        j0 = np.uintp(nodes[k, 2])
+        j1 = np.uintp(nodes[k, 3])
         w = 0.25 * weight[k]
-        contact = coupled[k]
-        slot = contacts.row[contact]
+        contact = np.uintp(coupled[k])
+        slot = np.uintp(rows[contact])
         if i0 == i1:
             end = 0 if i0 == edges[touching[contact, 0], 0] else 3
             diagonal[i0] += 4.0 * w
@@ -263,25 +268,26 @@ def eliminate(factor: Factor, v: Floats) -> bool:
     """
     order, start, row, tape = factor.order, factor.start, factor.row, factor.tape
     value, diagonal, inverse = factor.value, factor.diagonal, factor.inverse
-    t = 0
+    t = np.uintp(0)
     for k in range(order.shape[0]):
-        i = order[k]
+        i = np.uintp(order[k])
+        end = np.uintp(start[k + 1])
         d = diagonal[i]
         if not d > 0.0:
             return False
         s = 1.0 / d
         inverse[i] = s
         v0, v1, v2 = v[i, 0], v[i, 1], v[i, 2]
-        for p in range(start[k], start[k + 1]):
+        for p in range(np.uintp(start[k]), end):
             j = row[p]
             l = value[p] * s
             diagonal[j] -= l * value[p]
             v[j, 0] -= l * v0
             v[j, 1] -= l * v1
             v[j, 2] -= l * v2
-            for q in range(p + 1, start[k + 1]):
+            for q in range(p + ONE, end):
                 value[tape[t]] -= l * value[q]
-                t += 1
+                t += ONE
             value[p] = l
     return True
 
@@ -290,10 +296,10 @@ def substitute(factor: Factor, v: Floats) -> None:
     """Replace what `eliminate` left in v (n_nodes, 3) by the solution."""
     order, start, row, value, inverse = factor.order, factor.start, factor.row, factor.value, factor.inverse
     for k in range(order.shape[0] - 1, -1, -1):
-        i = order[k]
+        i = np.uintp(order[k])
         s = inverse[i]
         v0, v1, v2 = s * v[i, 0], s * v[i, 1], s * v[i, 2]
-        for p in range(start[k], start[k + 1]):
+        for p in range(np.uintp(start[k]), np.uintp(start[k + 1])):
             j = row[p]
             l = value[p]
             v0 -= l * v[j, 0]

@@ -20,12 +20,13 @@ def edge_geometry(a: Assembly, x: Floats, length: Floats, tangent: Floats) -> No
     """Length [m] (n_edges,) and unit tangent (n_edges, 3) of every edge of nodes x (n_nodes, 3)."""
     node_start, edge_start = a.node_start, a.edge_start
     for f in range(edge_start.shape[0] - 1):
-        n = node_start[f + 1] - node_start[f]
+        node, edge = node_start[f], edge_start[f]
+        n = node_start[f + 1] - node
         for k in range(n - 1):
-            i = np.uintp(node_start[f] + k)
-            _measure_edge(x, i, i + ONE, np.uintp(edge_start[f] + k), length, tangent)
-        if edge_start[f + 1] - edge_start[f] == n:
-            _measure_edge(x, node_start[f + 1] - 1, node_start[f], edge_start[f + 1] - 1, length, tangent)
+            i = np.uintp(node + k)
+            _measure_edge(x, i, i + ONE, np.uintp(edge + k), length, tangent)
+        if edge_start[f + 1] - edge == n:
+            _measure_edge(x, node + n - 1, node, edge + n - 1, length, tangent)
 
 
 def _measure_edge(x: Floats, i: Index, j: Index, e: Index, length: Floats, tangent: Floats) -> None:
@@ -77,15 +78,16 @@ def reference_twist_change(a: Assembly, tangent_0: Floats, tangent: Floats, chan
     """
     edge_start, hinge_start, hinges = a.edge_start, a.hinge_start, a.hinges
     for f in range(edge_start.shape[0] - 1):
-        n = edge_start[f + 1] - edge_start[f]
-        first = hinge_start[f + 1] - (n - 1)
+        edge = edge_start[f]
+        n = edge_start[f + 1] - edge
+        hinge = hinge_start[f + 1] - (n - 1)
         for k in range(n - 1):
-            p, h = np.uintp(edge_start[f] + k), np.uintp(first + k)
+            p = np.uintp(edge + k)
             y, x = _swept(tangent_0, tangent, p, p + ONE)
             small = 2.0 * small_atan(y / x)
-            change[h] = small if abs(y) < 0.02 * x else math.nan
-        if first > hinge_start[f]:
-            change[hinge_start[f]] = math.nan
+            change[np.uintp(hinge + k)] = small if abs(y) < 0.02 * x else math.nan
+        if hinge > hinge_start[f]:
+            change[hinge - 1] = math.nan
     for k in range(change.shape[0]):
         if change[k] != change[k]:
             y, x = _swept(tangent_0, tangent, hinges[k, 0], hinges[k, 1])
