@@ -17,7 +17,7 @@ from benchmarks import common
 from torsade.motion.guard import first_crossing, largest_move
 from torsade.motion.near import find_near, list_near
 from torsade.motion.overdamped import Motion
-from torsade.motion.rates import hold_bodies, powers
+from torsade.motion.rates import _material_rates, hold_bodies, powers
 from torsade.motion.scheme import ONE_STAGE, START, embedded_error, evaluate
 from torsade.rod.contact import add_contact_forces, add_drag_torques, find_contacts, find_drag
 from torsade.rod.damping import solve_spin
@@ -67,6 +67,11 @@ def evaluation(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
     add("bodies held", hold_bodies, a, bc, contacts, w.held, w.component)
     add("torques of drag", add_drag_torques, a, m, g.v, w.tangent, contacts, torque, weight)
     add("spin", solve_spin, a, m.eta_J, w.tangent, w.torque, w.spin_weight, bc.turned, bc.spin, omega, w.spin)
+    add(
+        "material angles", _material_rates, a, g.tangent, w.tangent, w.length, g.v, g.omega,
+        g.angular.copy(),
+    )  # fmt: skip
+    add("work and dissipation", powers, a, m, bc, g.v, g.omega, contacts, w)
     if factor.tape.size:
         add(ASSEMBLED, assemble, a, m.eta_A, contacts, w.held, factor)
         add(FACTORISED, _matrix, a, m.eta_A, contacts, w.held, factor, v)
@@ -75,7 +80,7 @@ def evaluation(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
 
 def step(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
     """Add what a step does besides evaluations."""
-    a, m, bc, state, control = motion.assembly, motion.model, motion.boundary, motion.state, motion.control
+    a, m, state, control = motion.assembly, motion.model, motion.state, motion.control
     g, near, add = now.stages, now.near, timed.add
     w = g.work
     moved = state.x + 1e-3 * control.radius * np.sin(np.arange(state.x.size)).reshape(-1, 3)
@@ -86,7 +91,6 @@ def step(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
         "guard against crossing", first_crossing, a, near.apart, near.guarded, near.count[0], state.x,
         moved, g.length, g.mid, largest_move(state.x, moved),
     )  # fmt: skip
-    add("work and dissipation", powers, a, m, bc, g.v, g.omega, near.contacts, w)
     add("directors", carry_directors, a.edge_start, director, g.tangent, w.tangent)
     add("pairs listed (when nodes have moved)", list_near, m, control, g.mid, g.length, near)
     add("pairs found (when they have gone far)", find_near, a, m, control, g.mid, g.length)

@@ -6,8 +6,8 @@ error-controlled steps of several evaluations of the forces; PyElastica's is a C
 with its largest stable step and damping near the critical damping of its slowest mode, which brings it to
 rest soonest. A run is over when the distance of the ends has come to its last value within 0.1 %.
 
-A step is compared on the tightened shape, one curve with more and more edges: one evaluation of all forces for
-both, explicit.
+A step is compared on the tightened shape, one curve with more and more edges: one evaluation of all forces
+for both, explicit.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ NEAR = 1e-3
 
 
 class Way(NamedTuple):
-    """How a rod came to rest: clock (its own, or the processor's) [s], distance of the ends [m] and steps by look."""
+    """How a rod came to rest: a clock, its own or the processor's [s], distance of the ends [m], steps."""
 
     clock: Floats
     distance: Floats
@@ -211,7 +211,7 @@ def tightened(edges: int, rest: float) -> Floats:
 
 
 def step(curve: Floats, edges: int, steps: int, repeats: int) -> dict[str, Any]:
-    """Time of an explicit step of both, with one evaluation of all forces, on a curve (n, 3) of so many edges."""
+    """Time of an explicit step of both, one evaluation of all forces; so many edges on a curve (n, 3)."""
     x = resample(curve, n=edges + 1)
     motion = ours(x, Stepping(fixed_step=1e-6))
     start = motion.checkpoint()
