@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import numba
@@ -29,6 +30,8 @@ from torsade.rod.kinematics import (
     reference_twist_change,
 )
 from torsade.rod.neighbours import edge_midpoints
+
+PAGE = Path(__file__).parents[1] / "docs" / "performance.md"
 
 WHOLE, ASSEMBLED, FACTORISED = "evaluation", "matrix assembled", "matrix factorised"
 
@@ -132,6 +135,7 @@ class _Kernels:
 def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     options = common.parser(__doc__)
     options.add_argument("--knot", default="reef", choices=common.BUILT_IN)
+    options.add_argument("--write", action="store_true", help="put the tables into docs/performance.md")
     given = options.parse_args(arguments)
     at_least, rounds = (1e-6, 1) if given.quick else (2e-3, 51)
     inner, outer = (_Kernels(at_least, rounds, not given.quick) for _ in range(2))
@@ -171,6 +175,8 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
         f"{found['evaluations_per_step']:.1f} evaluations, {found['refused_per_step']:.2f} refused steps and "
         f"{found['lists_per_step']:.3f} neighbour lists per step",
     ]
+    if given.write:
+        common.put("\n\n".join(tables), PAGE, "kernels")
     return common.show(found, tables, given.json)
 
 

@@ -57,6 +57,8 @@ SCRIPTS = (
     "movies",
     "block",
     "ensembles",
+    "protocols",
+    "cost",
 )
 
 
