@@ -5,6 +5,7 @@ Writes its tables into docs/batteries.md, between marks, unless `--no-write` is 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,10 @@ STUDIED = (("3_1", 0.0), ("4_1", 0.0), ("7_4", 0.0), ("3_1", 2.0), ("4_1", 2.0),
 """Knots and twist densities that are refined."""
 
 AMPHICHIRAL = (("4_1", 2.0), ("4_1", 4.0), ("6_3", 2.0), ("6_3", 4.0))
+CHIRAL = ("3_1", 2.0)
+PLACES = 8
+"""Where batteries are cut whose times are compared whatever the cut, evenly along the fiber."""
+
 MIRROR = np.array([1.0, 1.0, -1.0])
 SHARES = ("50", "10", "1")
 QUICK: Mapping[str, Any] = {"duration": "0.2 s", "charging": "0.5 s", "nodes": 60}
@@ -95,6 +100,19 @@ def mirrored(knot: str, twist: float, short: Mapping[str, Any]) -> list[Found]:
     return [found | apart, other | apart, run(f"m{knot}", -twist, **short) | apart]
 
 
+def everywhere(knot: str, twist: float, short: Mapping[str, Any], places: int = PLACES) -> Found:
+    """A battery cut at places all along: energy and writhe, and times to 10 % with their median and spread.
+
+    The spread is the robust standard deviation of the logarithm.
+    """
+    rows = [run(knot, twist, cut_at=k / places, **short) for k in range(places)]
+    tenth = np.array([t for row in rows if (t := times(row)[1]) is not None])
+    middle = float(np.median(tenth)) if len(tenth) else None
+    spread = float(1.4826 * np.median(np.abs(np.log(tenth / middle)))) if len(tenth) else None
+    kept = {name: rows[0][name] for name in ("knot", "twist_density", "energy_E0", "writhe")}
+    return kept | {"tenth": tenth.tolist(), "median": middle, "spread": spread}
+
+
 def surveyed(knots: Sequence[str], twists: Sequence[float], short: Mapping[str, Any]) -> list[Found]:
     """All knots at all twist densities."""
     return [run(knot, twist, **short) for knot in knots for twist in twists]
@@ -128,6 +146,22 @@ def mirror_table(rows: Sequence[Found]) -> str:
     return common.table([*heads, "charged, apart [h]", "tight, apart [h]"], cells)
 
 
+def everywhere_table(rows: Sequence[Found]) -> str:
+    """Either twist of a knot side by side, whatever the place of the cut."""
+    cells = []
+    for right, left in zip(rows[::2], rows[1::2], strict=True):
+        line: list[object] = [right["knot"], f"±{right['twist_density']:g}"]
+        for one in (right, left):
+            line += [one["energy_E0"]["total"], one["writhe"], one["median"]]
+            line.append(f"{min(one['tenth']):.3g} to {max(one['tenth']):.3g}" if one["tenth"] else None)
+        ratio = None if None in (right["median"], left["median"]) else right["median"] / left["median"]
+        error = [one["spread"] and one["spread"] / math.sqrt(len(one["tenth"])) for one in (right, left)]
+        cells.append([*line, ratio, None if None in error else math.exp(2 * math.hypot(*error))])
+    heads = ["energy [E_0]", "Wr", "to 10 %, median", "range"]
+    both = [*(f"{head}, +" for head in heads), *(f"{head}, −" for head in heads)]
+    return common.table(["knot", "h θ′", *both, "ratio of medians", "by chance up to"], cells)
+
+
 def _row(found: Found, note: str) -> Iterator[object]:
     yield found["knot"]
     yield f"{found['twist_density']:+g}"
@@ -157,6 +191,11 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
             for knot, twist in AMPHICHIRAL[: 1 if options.quick else None]
             for row in mirrored(knot, twist, short)
         ],
+        "everywhere": [
+            everywhere(knot, sign * twist, short, 2 if options.quick else PLACES)
+            for knot, twist in (CHIRAL, *AMPHICHIRAL)[: 1 if options.quick else None]
+            for sign in (1, -1)
+        ],
         "untwisted": surveyed(knots, (0.0,), short),
         "untwisted_doubled": surveyed(knots, (0.0,), {**double, **short}),
         "twisted": surveyed(knots, (3.0, -3.0), short),
@@ -164,6 +203,7 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     tables = {
         "refinement": refinement_table(found["refined"]),
         "mirror": mirror_table(found["mirror"]),
+        "everywhere": everywhere_table(found["everywhere"]),
         "untwisted": survey_table(found["untwisted"], found["untwisted_doubled"]),
         "twisted": survey_table(found["twisted"]),
     }

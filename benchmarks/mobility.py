@@ -25,7 +25,7 @@ from torsade.rod.factor import WORTH, pattern
 def _solve(times, a, eta_A, contacts, factor, force, fixed, tolerance, guess, v, work):  # type: ignore[no-untyped-def]
     for _ in range(times):
         v[:] = guess
-        solve_mobility(a, eta_A, contacts, factor, force, fixed, tolerance, v, work)
+        solve_mobility(a, eta_A, contacts, factor, (), force, fixed, tolerance, v, work)
 
 
 def matrix(motion: Motion, now: common.Moment) -> sparse.csc_matrix:

@@ -87,17 +87,25 @@ def kill(process: int) -> None:
     os.kill(process, signal.SIGKILL)
 
 
-def under_fire(design: Path, folder: Path, points: int) -> dict[str, Any]:
-    """A sweep whose worker is killed once and which is killed itself twice, each time to be gone on with."""
+def under_fire(
+    design: Path, folder: Path, points: int, *where: str, worker: Callable[[int], int]
+) -> dict[str, Any]:
+    """A sweep whose worker is killed once and which is killed itself twice, each time to be gone on with.
+
+    Parameters
+    ----------
+    where : options that say where it runs
+    worker : the sweep's process → a process that runs points for it
+    """
     began = time.perf_counter()
     seen: list[int] = []
     worker_kills = 0
     for share in (0.3, 0.6, None):
-        running = begun(design, folder, "--workers", str(WORKERS))
+        running = begun(design, folder, *where)
         before = stored(folder)
         aim = points if share is None else share * points
         if share == 0.3 and until(lambda: stored(folder) > 0.1 * points, running):
-            kill(workers_of(running.pid)[0])
+            kill(worker(running.pid))
             worker_kills += 1
         if share is not None and until(lambda aim=aim: stored(folder) >= aim, running):  # type: ignore[misc]
             kill(running.pid)
@@ -106,6 +114,8 @@ def under_fire(design: Path, folder: Path, points: int) -> dict[str, Any]:
             if seen[-1] < before:
                 raise RuntimeError("points that were stored have gone")
     out, _ = running.communicate()
+    if running.returncode:
+        raise RuntimeError(f"the sweep failed: {out}")
     last = json.loads(out)
     wall = time.perf_counter() - began
     return {
@@ -174,30 +184,36 @@ def _dask(*words: str) -> subprocess.Popen[str]:
     return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, text=True)
 
 
+def on_processes(design: Path, folder: Path, points: int) -> dict[str, Any]:
+    """A sweep on processes of this machine, under fire."""
+    return under_fire(
+        design, folder, points, "--workers", str(WORKERS), worker=lambda command: workers_of(command)[0]
+    )
+
+
 def on_dask(design: Path, folder: Path, points: int) -> dict[str, Any]:
-    """A sweep on dask, where a worker is killed."""
+    """A sweep on dask, under fire."""
     with dask_cluster() as (address, (_, first, *_)):
-        began = time.perf_counter()
-        running = begun(design, folder, "--scheduler", address)
-        kills = 0
-        if until(lambda: stored(folder) > 0.3 * points, running):
-            for number, parent, _ in processes():
-                if parent == first.pid:  # which only looks after the worker itself, and starts another
-                    kill(number)
-            kills = 1
-        out, _ = running.communicate()
-        wall = time.perf_counter() - began
-    if running.returncode:
-        raise RuntimeError(f"the sweep on dask failed: {out}")
-    return {"worker_kills": kills, "command_kills": 0, "wall_s": wall, **verified(design, folder, points)}
+
+        def worker(command: int) -> int:
+            """The worker itself: what looks after it starts another."""
+            return next(number for number, parent, _ in processes() if parent == first.pid)
+
+        return under_fire(design, folder, points, "--scheduler", address, worker=worker)
 
 
 def alike(one: Path, other: Path) -> dict[str, int]:
     """How many points two sweeps share, and of how many everything but times is the same to the last bit."""
-    sql = "SELECT key, * EXCLUDE (key, point, wall_s) FROM runs WHERE status = 'done'"
-    mine, theirs = ({row[0]: row[1:] for row in Catalogue(folder).query(sql).rows} for folder in (one, other))
+    mine, theirs = (_done(Catalogue(folder)) for folder in (one, other))
     shared = mine.keys() & theirs.keys()
     return {"shared": len(shared), "the_same": sum(mine[key] == theirs[key] for key in shared)}
+
+
+def _done(catalogue: Catalogue) -> dict[str, dict[str, Any]]:
+    """What is done, by key: columns by name, since their order is that in which they were first filled."""
+    found = catalogue.query("SELECT * EXCLUDE (point, wall_s) FROM runs WHERE status = 'done'")
+    rows = [dict(zip(found.columns, row, strict=True)) for row in found.rows]
+    return {row.pop("key"): row for row in rows}
 
 
 def overhead(folder: Path, duration: str, count: int) -> dict[str, Any]:
@@ -287,14 +303,12 @@ def overhead_text(found: Sequence[dict[str, Any]]) -> str:
 def measured(part: str, folder: Path, points: int, quick: bool) -> Any:
     """One part of what is to be found."""
     if part == "overhead":
-        return [overhead(folder / "long", "50 ms", 150), overhead(folder / "short", "0.5 ms", 1000)]
+        return [overhead(folder / "long", "450 ms", 150), overhead(folder / "short", "0.5 ms", 1000)]
     design = folder / f"{part}.toml"
     duration = "100 ms" if quick else "0.5 ms"
     design.write_text(DESIGN.format(duration=duration, twists=TWISTS, seeds=points // TWISTS))
     points = len(Sweep.read(design))
-    if part == "dask":
-        return on_dask(design, folder / "dask", points)
-    return under_fire(design, folder / "processes", points)
+    return (on_dask if part == "dask" else on_processes)(design, folder / part, points)
 
 
 def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:

@@ -122,6 +122,7 @@ FIELDS = {
     "snap-quench": {"speed": "100 mm/s", "length": "24 cm", "rho": "1.5 g/cm^3", "approach": "10 ms"},
     "pendulum": {"turn": "45 deg", "mass": "20 g", "material": "nylon", "step": "1 us", "radius": 0.0007},
     "battery": {"knot": "4_1", "twist": 1.0, "nodes": 60, "cut_at": 0.25, "charging": "0.3 s", "seed": 2},
+    "suture": {"throws": "5,-3", "angle": "30 deg", "skin_stiffness": "20 N/m", "friction": 0.3, "gap": 1e-3},
 }
 
 

@@ -149,16 +149,14 @@ def _results(name: str) -> Reader:
         raise KeyError(name)
 
     def one(body: bytes, folder: Path) -> None:
-        from torsade.protocols import PROTOCOLS
         from torsade.results import Result
 
         sound = (whole / name).read_bytes()
         (whole / name).write_bytes(body)
         try:
             found = Result.open(whole)
-            if found.protocol in PROTOCOLS:
-                PROTOCOLS[found.protocol].report(found)
             str((found, found.spec, found.complete, found.frames, found.c_f, found.last_held))
+            found.report()
         finally:
             (whole / name).write_bytes(sound)
 

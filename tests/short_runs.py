@@ -16,6 +16,7 @@ from torsade.protocols import (
     SnapQuench,
     SnapTwist,
     Spec,
+    Suture,
     Tighten,
 )
 
@@ -30,6 +31,7 @@ SHORT: Mapping[str, Spec] = {
         SnapQuench(speed="0.5 m/s", approach="0.5 ms", after="0.4 ms", frames=20, disorder=0.02, seed=3),
         Pendulum(duration="0.4 s", frames=10),
         Battery(knot="4_1", twist=1.0, nodes=60, charging="0.3 s", duration="0.3 s", frames=12),
+        Suture(throws="3,-3", friction=0.3, duration="40 ms", release="10 ms", frames=8, skin_radius="1 mm"),
     )
 }
 """By protocol."""

@@ -52,6 +52,8 @@ SCRIPTS = (
     "torque_writhe",
     "tightening",
     "batteries",
+    "battery_map",
+    "charging",
     "breaking",
     "third_break",
     "movies",

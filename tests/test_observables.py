@@ -168,3 +168,27 @@ def test_pull_speed_is_the_mean_over_the_interval_before() -> None:
     speed = observables.pull_speed([0.0, 0.5, 0.6], [0.0, 1.0, 1.5])
     assert math.isnan(speed[0])
     np.testing.assert_allclose(speed[1:], [2.0, 5.0])
+
+
+def helix(n: int, radius: float, rise: float, turns: float) -> NDArray[np.float64]:
+    a = np.linspace(0.0, 2 * np.pi * turns, n)
+    return np.stack([radius * np.cos(a), radius * np.sin(a), rise * a], axis=1)
+
+
+def test_a_ring_is_planar_and_a_cube_is_not() -> None:
+    cube = np.array(list(np.ndindex(2, 2, 2)), float)
+    assert observables.non_planarity(ring(40, 3.0)) < 1e-9
+    assert observables.non_planarity(cube + 5.0) == pytest.approx(1.0)
+    stretched = cube * [1.0, 2.0, 4.0]
+    assert observables.non_planarity(stretched) == pytest.approx(0.25)
+
+
+def test_torsion_is_that_of_a_helix_and_straight_parts_do_not_count() -> None:
+    """tau = b/(a^2 + b^2) of a helix of radius a that rises b a radian."""
+    x = helix(400, 3.0, 1.0, 4.0)
+    assert observables.mean_torsion(x, 2.0) == pytest.approx(2.0 / (9.0 + 1.0), rel=1e-3)
+    assert observables.mean_torsion(x * [1.0, 1.0, 0.0], 2.0) < 1e-9
+    tangent = (x[-1] - x[-2])[None]
+    led_out = np.concatenate([x, x[-1] + tangent * np.arange(1, 200)[:, None]])
+    assert observables.mean_torsion(led_out, 2.0) == pytest.approx(observables.mean_torsion(x, 2.0), rel=1e-2)
+    assert observables.mean_torsion(helix(400, 3.0, -1.0, 4.0), 2.0) == pytest.approx(0.2, rel=1e-3)

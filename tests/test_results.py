@@ -115,12 +115,23 @@ def test_frames_are_appended_in_whole_chunks(tmp_path: Path) -> None:
     values = np.full(frames, np.nan)
     attrs = {"protocol": "tighten", "spec": "{}", "status": "running", "versions": {}, "done": 0}
     path = tmp_path / "long.zarr.part"
-    store.create(xarray.Dataset({"length": ("time", values)}, attrs=attrs), path)
+    store.create(xarray.Dataset({"time": ("time", values), "length": ("time", values)}, attrs=attrs), path)
     done = 0
     for upto in (1, 100, frames // 2, frames):
         values[done:upto] = np.arange(done, upto)
-        store.append(path, {"length": values}, done, upto)
+        store.append(path, {"time": values, "length": values}, done, upto)
         store.set_attributes(path, {"done": upto})
         done = upto
         read = ts.open(path).dataset["length"].values
         np.testing.assert_array_equal(read, np.arange(upto))
+
+
+def test_a_report_of_what_is_damaged_or_not_done_is_refused(result: ts.Result) -> None:
+    with pytest.raises(ts.TorsadeError, match=r"cannot be read \('pulled'\); it is damaged"):
+        result.report()
+    result.dataset.attrs["status"] = "interrupted"
+    with pytest.raises(ts.TorsadeError, match="the run is interrupted, and its numbers come at its end"):
+        result.report()
+    result.dataset.attrs["protocol"] = "knit"
+    with pytest.raises(ts.TorsadeError, match="protocol 'knit', which this version does not have"):
+        result.report()

@@ -134,6 +134,24 @@ def _joined(
     )
 
 
+def with_points(a: Assembly, count: int) -> Assembly:
+    """The assembly and so many nodes after its own, each a fiber without edges: bodies that fibers touch."""
+    none, no = np.zeros(count), np.zeros(count, np.bool_)
+
+    def after(start: Ints, step: int) -> Ints:
+        return np.append(start, start[-1] + step * np.arange(1, count + 1))
+
+    return a._replace(
+        node_length=np.append(a.node_length, none),
+        fiber_length=np.append(a.fiber_length, none),
+        node_start=after(a.node_start, 1),
+        edge_start=after(a.edge_start, 0),
+        hinge_start=after(a.hinge_start, 0),
+        closed=np.append(a.closed, no),
+        ends_meet=np.append(a.ends_meet, no),
+    )
+
+
 def split(a: Assembly, hinge: int) -> Assembly:
     """The assembly after its fiber is cut at a hinge: one hinge less, one node and one fiber more.
 

@@ -28,6 +28,13 @@ def quoted(value: object, longest: int = 60) -> str:
     return text if len(text) <= longest else text[: longest - 4] + "..." + text[-1]
 
 
+def named(path: object, longest: int = 200) -> str:
+    """The path of a file as it is shown in a sentence, without the middle of one that is very long."""
+    text = repr(str(path))
+    half = longest // 2 - 2
+    return text if len(text) <= longest else f"{text[:half]}...{text[-half:]}"
+
+
 def listed(words: Sequence[str], between: str = " ", most: int = 12) -> str:
     """Words in a sentence, the first ones of many."""
     if len(words) <= most:

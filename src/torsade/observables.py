@@ -30,6 +30,8 @@ __all__ = [
     "hinge_twist",
     "integral",
     "log_strain",
+    "mean_torsion",
+    "non_planarity",
     "pull_speed",
     "surface_strain",
     "surface_stress",
@@ -167,6 +169,33 @@ def _rest_curvature(assembly: Assembly, state: State) -> Floats:
 def log_strain(assembly: Assembly, state: State, radius: float) -> Floats:
     """Strain log(1 + √(eps:eps)) on the surface at every node, shape (n_nodes,); see `SurfaceStrain`."""
     return surface_strain(assembly, state, radius).log
+
+
+def non_planarity(x: Floats) -> float:
+    """Smallest over largest principal radius of gyration of nodes (n, 3): 0 in a plane, 1 as wide as long.
+
+    Of a fiber that is nearly straight it is small too.
+    """
+    apart = x - x.mean(axis=0)
+    squares = np.linalg.eigvalsh(apart.T @ apart)
+    return math.sqrt(max(float(squares[0]), 0.0) / max(float(squares[2]), 1e-300))
+
+
+def mean_torsion(x: Floats, radius: float) -> float:
+    """Mean |torsion| of an open polyline (n, 3) times the radius h, weighted with the curvature squared.
+
+    Torsion is the angle between the binormals at both ends of an edge over its length. What is straight has
+    no weight; 0 in a plane.
+    """
+    e = np.diff(x, axis=0)
+    l = np.linalg.norm(e, axis=1)
+    t = e / l[:, None]
+    b = np.cross(t[:-1], t[1:])
+    size = np.linalg.norm(b, axis=1)
+    across = np.linalg.norm(np.cross(b[:-1], b[1:]), axis=1)
+    angle = np.arctan2(across, np.einsum("kc,kc->k", b[:-1], b[1:]))
+    weight = size[:-1] * size[1:]
+    return float(radius * (weight * angle / l[1:-1]).sum() / max(float(weight.sum()), 1e-300))
 
 
 def fastest(state: State) -> float:

@@ -38,11 +38,12 @@ def present() -> dict[str, Any]:
 
 def versions() -> dict[str, str]:
     """Of what results are computed and stored with."""
-    return {"torsade": __version__, "python": platform.python_version()} | _packages()
+    return {"torsade": __version__, "python": platform.python_version(), **_libraries()}
 
 
 @lru_cache(maxsize=1)
-def _packages() -> dict[str, str]:
+def _libraries() -> dict[str, str]:
+    """Those that are installed, which the disk says; what is imported does not change."""
     return {name: version(name) for name in LIBRARIES}
 
 

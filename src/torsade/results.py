@@ -137,6 +137,16 @@ class Result:
             return self.frames - 1
         return max(0, int(self._dataset["time"].searchsorted(slipped * (1 - 1e-9))) - 1)
 
+    def report(self) -> dict[str, Any]:
+        """The numbers that its command prints, under the keys of `--json`.
+
+        Raises
+        ------
+        TorsadeError
+            When the run has not come to its end, its protocol is not known here, or what it wrote is damaged.
+        """
+        return dict(_above("torsade.protocols.stored").report(self))
+
     def save(self, path: str | Path, overwrite: bool = False) -> Path:
         """Write the result to a folder NAME.zarr.
 

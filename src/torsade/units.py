@@ -37,10 +37,12 @@ __all__ = [
     "Number",
     "Pressure",
     "Rate",
+    "Stiffness",
     "Time",
     "Torque",
     "Velocity",
     "Viscosity",
+    "Whole",
     "bearable",
     "exact",
     "indefinite",
@@ -106,6 +108,7 @@ DIMENSIONS: Mapping[str, Dimension] = MappingProxyType(
             Dimension("mass", "kg", (0, 1, 0, 0), "20 g"),
             Dimension("density", "kg/m^3", (-3, 1, 0, 0), "1.5 g/cm^3"),
             Dimension("force", "N", (1, 1, -2, 0), "15 N"),
+            Dimension("stiffness", "N/m", (0, 1, -2, 0), "20 N/m"),
             Dimension("torque", "N m", (2, 1, -2, 0), "3 mN mm"),
             Dimension("energy", "J", (2, 1, -2, 0), "3 mJ"),
             Dimension("moment of inertia", "kg m^2", (2, 1, 0, 0), "2 kg mm^2"),
@@ -348,8 +351,15 @@ def _reads(dimension: str) -> BeforeValidator:
     return BeforeValidator(lambda value: bearable(value, dimension))
 
 
+def _whole(value: object) -> object:
+    if isinstance(value, bool):  # which counts as 0 or 1 elsewhere
+        raise QuantityError(f"is {value}; give a whole number")
+    return value
+
+
 # Annotated types for pydantic models: ``radius: Length = 2e-4``. The `Dimension` in the metadata
 # tells help texts the unit; bounds are added where used: ``Annotated[Force, Field(gt=0)]``.
+Whole = Annotated[int, BeforeValidator(_whole)]
 Number = Annotated[float, _reads("number"), DIMENSIONS["number"]]
 Length = Annotated[float, _reads("length"), DIMENSIONS["length"]]
 Time = Annotated[float, _reads("time"), DIMENSIONS["time"]]
@@ -360,6 +370,7 @@ AngularVelocity = Annotated[float, _reads("angular velocity"), DIMENSIONS["angul
 Density = Annotated[float, _reads("density"), DIMENSIONS["density"]]
 Mass = Annotated[float, _reads("mass"), DIMENSIONS["mass"]]
 Force = Annotated[float, _reads("force"), DIMENSIONS["force"]]
+Stiffness = Annotated[float, _reads("stiffness"), DIMENSIONS["stiffness"]]
 Torque = Annotated[float, _reads("torque"), DIMENSIONS["torque"]]
 Pressure = Annotated[float, _reads("pressure"), DIMENSIONS["pressure"]]
 Viscosity = Annotated[float, _reads("viscosity"), DIMENSIONS["viscosity"]]

@@ -64,6 +64,25 @@ VARIABLES: Mapping[str, tuple[tuple[str, ...], str, str]] = {
     "sample_energy": (("sample",), "J", "stored energy at the times of samples"),
     "sample_dissipation": (("sample",), "J", "energy lost to drag until the times of samples"),
     "sample_fewest_crossings": (("sample",), "1", "fewest crossings at the times of samples"),
+    "skin_position": (("time", "side", "space"), "m", "where the axis of each side of the skin is"),
+    "gap": (("time",), "m", "gap of the wound"),
+    "drawn": (("time",), "m", "how far the two ends have been drawn out, together"),
+    "slip_speed": (("time",), "m/s", "mean speed at which the two ends are drawn out"),
+    "energy_skin": (("time",), "J", "contact energy of fibers with the skin, and of its sides"),
+    "energy_springs": (("time",), "J", "energy of the springs that hold the skin"),
+    "spring_force": (("time", "side", "space"), "N", "force of the spring on each side of the skin"),
+    "skin_force": (("time", "side", "space"), "N", "force of the fiber on each side of the skin"),
+    "skin_pressing": (("time", "side"), "N", "sum of the normal forces on each side of the skin"),
+    "skin_shearing": (("time", "side"), "N", "sum of the shear forces on each side of the skin, in size"),
+    "skin_normal": (("time", "side", "edge"), "N/m", "force into the skin, per rest length of the fiber"),
+    "skin_around": (("time", "side", "edge"), "N/m", "shear force on the skin around z, counterclockwise"),
+    "skin_along": (("time", "side", "edge"), "N/m", "shear force on the skin along z"),
+    "sample_gap": (("sample",), "m", "gap of the wound at the times of samples"),
+    "sample_drawn": (("sample",), "m", "how far the ends have been drawn out, at the times of samples"),
+    "sample_z_a": (("sample",), "m", "z-displacement of side a at the times of samples"),
+    "sample_z_b": (("sample",), "m", "z-displacement of side b at the times of samples"),
+    "sample_non_planarity": (("sample",), "1", "smallest over largest radius of gyration, at those times"),
+    "sample_torsion": (("sample",), "1", "mean |torsion| where the fiber is bent, times the radius, then"),
     **{
         f"charge_{name}": ((_CHARGE, *more), unit, f"{meaning}, while the fiber was closed")
         for name, more, unit, meaning in (
@@ -93,10 +112,14 @@ STRAINED = (
     "velocity",
     "self_torque",
 )
-SINGLE_PRECISION = (*STRAINED, "twist_density", "stress", "energy_density")
+SKIN = ("skin_normal", "skin_around", "skin_along")
+SINGLE_PRECISION = (*STRAINED, *SKIN, "twist_density", "stress", "energy_density")
 """Variables stored as 32-bit floats."""
 
-BYTES_PER_NODE = sum(4 * (3 if "space" in VARIABLES[name][0] else 1) for name in STRAINED)
+BYTES_PER_NODE = sum(
+    4 * (3 if "space" in VARIABLES[name][0] else 1) * (2 if "side" in VARIABLES[name][0] else 1)
+    for name in (*STRAINED, *SKIN)
+)
 """What a frame takes for every node, and the edge that comes with it: in no protocol more."""
 
 SAMPLE = "sample_"

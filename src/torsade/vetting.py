@@ -121,8 +121,8 @@ def vetted(path: Path) -> tuple[dict[str, Any], dict[str, Stored]]:
             sizes = {s for v in stored.values() for d, s in zip(v.dims, v.shape, strict=True) if d == dim}
             if sizes and found.get(name, 0) > min(sizes):
                 raise _UnfitError(f"{name} is {found[name]}, more than there are")
-        if not any("time" in about.dims for about in stored.values()):
-            raise _UnfitError("it has no frames")
+        if "time" not in stored or stored["time"].dims != ("time",):
+            raise _UnfitError("it has no times of frames")
     return found, stored
 
 

@@ -44,6 +44,8 @@ FOUND = {
     "a crossing of many labels": ("codes", b"code\nX[" + b"A4," * 5000 + b"A5]"),
     "TOML nested without end": ("specs", b"toml\na = " + b"[" * 5000),
     "TOML with a key of 100 000 parts": ("specs", b"toml\n1" + b".2" * 100_000 + b" = 3"),
+    "a command of 100 000 words": ("shell", b"torsade\nrun\ntighten\n" + b"--unt10 s\n" * 100_000),
+    "a file whose name is longer than a sentence": ("shell", b"torsade\nrun\n--spec\n--sp" + b"(" * 900),
     "a field of many letters": ("specs", spec("tighten", **{"a" * 5000: 1})),
     "a protocol of many letters": ("specs", b'toml\nprotocol = "' + b"x" * 5000 + b'"'),
     "a section of no area": ("specs", spec("prison-escape", radius="1e-170 m")),

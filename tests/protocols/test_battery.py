@@ -13,7 +13,7 @@ import pytest
 import torsade as ts
 from torsade.protocols import Battery
 from torsade.protocols.charging import trembled
-from torsade.protocols.discharge import crossing_losses, discharge_times
+from torsade.protocols.discharge import crossing_losses, discharge_times, mean_on_the_way
 from torsade.protocols.driving import Interrupted
 
 SHORT = Battery(knot="4_1", twist=1.0, nodes=60, charging="0.3 s", duration="0.3 s", frames=12)
@@ -92,6 +92,7 @@ def test_link_and_knot_are_kept_while_the_fiber_is_closed(short) -> None:
     assert np.abs(link - link[0]).max() < 1e-6
     assert data.attrs["link_error"] == np.abs(link - link[0]).max()
     assert set(data.attrs["charge_knots"]) == {"4_1"}
+    assert data.attrs["knot_kept"] is True
     assert len(data.attrs["charge_knots"]) == data.sizes["charge"]
 
 
@@ -161,12 +162,15 @@ def test_a_trefoil_is_untied() -> None:
 
 
 def test_a_mirror_image_does_as_the_mirror_image() -> None:
-    """Without noise, m5_2 at -1 is 5_2 at 1 seen in a mirror, but for what errors of the solver grow to."""
+    """m5_2 at -1 is 5_2 at 1 seen in a mirror, noise and all, but for what errors of the solver grow to."""
     changes = ({"knot": "5_2"}, {"knot": "m5_2", "twist": -1.0})
-    right, left = (SHORT.model_copy(update={"noise": 0.0, **c}).run().dataset for c in changes)
+    specs = [SHORT.model_copy(update=c) for c in changes]
+    first, second = (spec.tied()[1].x for spec in specs)
+    np.testing.assert_array_equal(first, second * [1, 1, -1])
+    right, left = (spec.run().dataset for spec in specs)
     for name in ("energy_bend", "energy_twist"):
         np.testing.assert_allclose(right[name][:6], left[name][:6], rtol=1e-5)
-        np.testing.assert_allclose(right[name], left[name], rtol=3e-3)
+        np.testing.assert_allclose(right[name], left[name], rtol=3e-3, atol=1e-6 * float(right[name][0]))
     np.testing.assert_allclose(right["writhe"], -left["writhe"], atol=3e-3)
 
 
@@ -211,3 +215,26 @@ def test_noise_is_the_same_curve_at_every_number_of_nodes() -> None:
     np.testing.assert_allclose(fine[::2], coarse, atol=1e-15)
     assert math.sqrt((coarse**2).sum(axis=1).mean()) == pytest.approx(0.01)
     assert not np.allclose(coarse, trembled(np.zeros((40, 3)), 0.01, 4))
+
+
+def test_another_knot_in_any_frame_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The knot asked for is meant, by whatever name or code: m4_1 is 4_1."""
+    from torsade.protocols import charging
+
+    spec = SHORT.model_copy(update={"knot": "m4_1", "charging": 1e-3, "duration": 1e-4, "frames": 1})
+    assert Battery.report(spec.run())["knot_kept"]
+    named = charging._knot
+    said = iter(["4_1", "3_1"])
+    monkeypatch.setattr(charging, "_knot", lambda x: next(said, named(x)))
+    assert not Battery.report(spec.run())["knot_kept"]
+
+
+def test_means_on_the_way_do_not_know_how_long_it_takes() -> None:
+    """Of ln(E_0/E) between a half and a hundredth, the middle; at any pace; None where it is not reached."""
+    t = np.linspace(0.0, 6.0, 4001)
+    middle = 0.5 * (math.log(2) + math.log(100))
+    for energy in (np.exp(-t), np.exp(-0.5 * t - 0.05 * t**2)):
+        found = mean_on_the_way(energy, -np.log(energy), (0.5, 0.01))
+        reached = energy[-1] <= 0.01
+        assert found == (pytest.approx(middle, rel=1e-2) if reached else None)
+    assert mean_on_the_way(np.exp(-t[:1000]), t[:1000], (0.5, 0.01)) is None

@@ -93,7 +93,7 @@ def test_both_solvers_agree_with_dense_cholesky(seed, sizes, n, node_pair, share
     for factor in (made, ()):
         v = np.where(fixed[:, None], held, rng.normal(size=force.shape))
         work = mobility_work(len(fixed), len(a.edges))
-        assert solve_mobility(a, ETA_A, contacts, factor, force, fixed, 1e-13, v, work)
+        assert solve_mobility(a, ETA_A, contacts, factor, (), force, fixed, 1e-13, v, work)
         assert np.abs(v - expected).max() <= 1e-8 * np.abs(expected).max()
         assert np.array_equal(v[fixed], held[fixed])
 

@@ -200,3 +200,11 @@ def test_a_file_that_is_no_design_is_refused(tmp_path, text, sentence):
     (tmp_path / "a.toml").write_text(text)
     with pytest.raises(TorsadeError, match=sentence):
         Sweep.read(tmp_path / "a.toml")
+
+
+def test_designs_may_be_long(tmp_path):
+    """A list of ten thousand values is 80 KB."""
+    twists = [round(0.0001 * k, 4) for k in range(10_000)]
+    (tmp_path / "a.toml").write_text(f'protocol = "snap-twist"\n[grid]\ntwist = {twists}\n')
+    sweep = Sweep.read(tmp_path / "a.toml")
+    assert [row[0] for row in sweep.axes[0].rows] == twists

@@ -217,13 +217,15 @@ def test_reports_are_flattened_and_repeat_no_field():
     report = {
         "protocol": "p",
         "nodes": 3,
+        "twist": 2.5,
         "wall_s": 1.0,
         "mean": {"value": 1.0, "interval": {"low": 0.0}},
         "breaks": [{"time_s": 1.0, "x": 2}, {"time_s": 3.0, "x": None}],
         "lengths_m": [1.0, 2.0],
         "none": None,
     }
-    assert flat(report, {"protocol": "p", "nodes": 3}) == {
+    assert flat(report, {"protocol": "p", "nodes": 3, "twist": 1.0}) == {
+        "twist_found": 2.5,
         "mean_value": 1.0,
         "mean_interval_low": 0.0,
         "breaks_time_s": [1.0, 3.0],

@@ -24,6 +24,7 @@ from torsade.topology import (
     project,
 )
 from torsade.topology.codes import from_braid, from_dt, from_pd, from_text, to_open_pd, to_pd
+from torsade.topology.identify import name_open
 from torsade.topology.invariants import alexander, jones, oriented, signature
 from torsade.topology.table import entries
 
@@ -187,3 +188,11 @@ def test_the_code_of_a_tangle_as_text() -> None:
     reef = bend_diagram("reef")
     text = " ".join(f"X[{','.join(row)}]" for row in to_open_pd(reef))
     assert is_isomorphic(from_text(text), reef)
+
+
+def test_the_name_is_found_with_fewer_directions() -> None:
+    """That of all of them, for walks that are knotted more or less."""
+    random = np.random.default_rng(2)
+    for _ in range(12):
+        x = np.cumsum(random.normal(size=(40, 3)), axis=0)
+        assert name_open(x, 15) == identify_open(x, 15).name

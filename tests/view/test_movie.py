@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import subprocess
 from itertools import pairwise
@@ -13,7 +14,7 @@ import xarray as xr
 
 import torsade as ts
 from torsade.errors import TorsadeError
-from torsade.protocols import SnapTwist
+from torsade.protocols import Battery, SnapTwist
 from torsade.view import film
 from torsade.view.captions import Clock, nice_length, pace
 from torsade.view.colours import strain_colour
@@ -214,3 +215,62 @@ def test_times_and_lengths_are_written_as_people_do() -> None:
         "2.0 times faster",
         "1.2 times slower",
     ]
+
+
+@pytest.fixture(scope="module")
+def battery() -> xr.Dataset:
+    spec = Battery(knot="3_1", twist=2.0, nodes=60, charging="0.1 s", duration="0.6 s", frames=20)
+    return spec.run().dataset
+
+
+def test_time_of_a_battery_runs_ever_faster(battery) -> None:
+    """Evenly in log(1 + t/tau), tau a quarter of the time in which half the energy goes; and back."""
+    moments = Moments(battery)
+    end = moments.times[-1]
+    tau = 0.25 * battery.attrs["discharge_time_T0"]["50"] * battery.attrs["T0_s"]
+    for time in (0.0, 0.1 * end, end):
+        share = math.log1p(time / tau) / math.log1p(end / tau)
+        assert moments.share(time) == pytest.approx(share, abs=1e-12)
+        assert moments.when(share) == pytest.approx(time, abs=1e-12)
+    part = Moments(battery, (5, 10))
+    assert (part.share(part.times[0]), part.share(part.times[-1])) == pytest.approx((0.0, 1.0))
+    assert not part.broken_at_first
+    even = Moments(slid())
+    assert [even.share(t) for t in (0.0, 0.5, 2.0)] == [0.0, 0.25, 1.0]
+
+
+def test_a_battery_says_what_it_is_and_what_is_left(battery) -> None:
+    moments = Moments(battery)
+    assert moments.note(0.0) == "3_1, 100 % of the energy left"
+    energy = sum(battery[f"energy_{kind}"].values for kind in ("bend", "twist", "stretch", "contact"))
+    left = 100 * energy[-1] / energy[0]
+    words = moments.note(float(moments.times[-1])).split(", ")
+    assert float(words[1].split()[0]) == pytest.approx(left, abs=0.51)
+    assert words[0] in ("untied", "3_1")
+
+
+def test_a_battery_is_whole_before_it_is_cut_and_then_marked(battery) -> None:
+    moments = Moments(battery)
+    shooting = film._Shooting(moments, (320, 192), "energy", False, 0.0)
+    shots = list(film._shots(moments, 200))
+    assert [s.before for s in shots].index(False) == pytest.approx(film.LEAD * 200, abs=1)
+    marked = [shooting.rings(moments.at(s.time), s) for s in shots]
+    assert not marked[0]
+    assert not marked[-1]
+    first = next(rings for rings in marked if rings)[0]
+    ends = shooting.view.pixels(shooting._nodes(moments.at(0.0))[0][[0, -1]])
+    np.testing.assert_allclose(first.place, ends[0], atol=1.0)
+    np.testing.assert_allclose(ends[0], ends[1], atol=1e-6)
+
+
+@pytest.mark.parametrize("colour", [None, "strain", "strands"])
+def test_a_battery_is_filmed(battery, colour: str | None, tmp_path: Path) -> None:
+    """All of it is in view; at the end it lies level."""
+    _, seen = pictures(film.movie(battery, tmp_path / "b.mp4", colour=colour, **SMALL))
+    assert len(seen) == 6
+    shooting = film._Shooting(Moments(battery), (320, 192), "energy", False, 0.0)
+    for moment in Moments(battery).spread():
+        at = shooting.view.pixels(np.concatenate(shooting._nodes(moment)))
+        assert ((at > 0) & (at < np.array([320, 192]))).all()
+    first, last = at[0], at[-1]
+    assert abs(first[1] - last[1]) < 0.1 * abs(first[0] - last[0]) + 1

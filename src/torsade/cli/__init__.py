@@ -16,6 +16,9 @@ __all__ = ["main"]
 
 BAD_INPUT = 2
 
+MOST_WORDS = 1000
+"""On a command line: finding out what each of very many is takes minutes."""
+
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and exit."""
@@ -30,6 +33,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _status(arguments: list[str]) -> int:
     """Exit code of a command line; anything the user should know has been printed."""
     try:
+        if len(arguments) > MOST_WORDS:
+            raise TorsadeError(
+                f"the command line has {len(arguments)} words, more than {MOST_WORDS}; quote what belongs "
+                "together, or put fields into a TOML file"
+            )
         from cyclopts import CycloptsError
 
         from torsade.cli.app import build, with_protocol

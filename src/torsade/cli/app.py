@@ -46,6 +46,7 @@ EXAMPLES = {
     "pendulum": '--turn "45 deg" --mass "20 g" --out pendulum.zarr --plot pendulum.png',
     "snap-quench": '--speed "100 mm/s" --disorder 0.05 --seed 1 --out quench.zarr --plot quench.png',
     "snap-twist": '--twist "270 deg" --out snap.zarr --frames 200 --movie snap.mp4',
+    "suture": "--throws 5,-3 --out surgeon.zarr --picture surgeon.png --plot wound.png",
     "tighten": '--knot overhand --duration "10 s" --until-still "1 um/s" --out overhand.zarr',
     "reidemeister": "--move R1 --out loop.zarr --plot loop.png",
 }
@@ -120,8 +121,8 @@ def build(arguments: list[str]) -> App:
         name="run",
         help="Run an experiment: prison-escape (pull a bend), tighten (pull a knot in one strand), "
         "reidemeister (make a Reidemeister move), bend-twist (bend a twisted fiber), snap-twist (break a "
-        "twisted rod), snap-quench (break a rod at speed), pendulum (a mass that turns on a rod) or battery "
-        "(cut a closed, twisted knot).",
+        "twisted rod), snap-quench (break a rod at speed), pendulum (a mass that turns on a rod), battery "
+        "(cut a closed, twisted knot) or suture (close a wound with two throws).",
         help_epilogue="See the options with: torsade run prison-escape --help",
         version_flags=[],
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json as json_format
 import sys
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
@@ -22,10 +23,13 @@ if TYPE_CHECKING:
     from torsade.protocols.base import Spec
     from torsade.results import Result
 
-__all__ = ["check_drawings", "demo", "progress", "run"]
+__all__ = ["check_drawings", "demo", "now_and_then", "progress", "run"]
 
 BREAKING = ("snap-twist", "snap-quench")
 """Protocols whose results are drawn in pieces."""
+
+SAY_EVERY = 30.0
+"""Time between lines about progress where there is no bar [s]."""
 
 INSTALL_VIEW = 'pip install "torsade[view]"'
 
@@ -169,6 +173,20 @@ def _notice(share: float, note: str) -> None:
         say(note)
 
 
+def now_and_then() -> Progress:
+    """Says what it is told, at times: for what is long and told often."""
+    said = [time.monotonic()]
+
+    def notice(share: float, note: str) -> None:
+        if note.startswith(("compiling", "stopping")):
+            say(note)
+        elif time.monotonic() - said[0] > SAY_EVERY:
+            said[0] = time.monotonic()
+            say(note)
+
+    return notice
+
+
 @contextmanager
 def progress(quiet: bool, notice: Progress = _notice, *, estimate: bool = True) -> Iterator[Progress | None]:
     """A progress bar on the terminal, with an estimate of the time left; off it, what `notice` says."""
@@ -236,6 +254,7 @@ def _plot(result: Result, path: str) -> None:
         "bend-twist": plots.plot_bent,
         "pendulum": plots.plot_swing,
         "battery": battery.plot_battery,
+        "suture": plots.plot_wound,
         **dict.fromkeys(BREAKING, cascade.plot_cascade),
     }
     by_protocol[result.protocol](result.dataset, path)
@@ -243,7 +262,7 @@ def _plot(result: Result, path: str) -> None:
 
 def _print(result: Result, out: str | None, json: bool) -> None:
     """The numbers of a result, for machines or for people."""
-    report = PROTOCOLS[result.protocol].report(result)
+    report = result.report()
     if json:
         print(json_format.dumps(report, allow_nan=False), flush=True)
         return

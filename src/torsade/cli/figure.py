@@ -9,13 +9,15 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from torsade.cli.commands import check_drawings, progress
+from torsade.cli.commands import check_drawings, now_and_then, progress
+from torsade.cli.messages import say
 from torsade.errors import TorsadeError, counted, quoted, reason_of
 from torsade.figures import NUMBERS, figure
 from torsade.figures.base import Cell, Choice, Table
 
 if TYPE_CHECKING:
     from torsade.figures.base import Figure
+    from torsade.sweep import Catalogue
 
 __all__ = ["draw", "show_all"]
 
@@ -57,11 +59,12 @@ def draw(
     check_drawings(str(wanted.file(folder)), None)
     _check_files(wanted, folder)
     specs, kept = wanted.runs(choice), folder / "runs"
+    at_once = None if workers is None else int(workers)
+    catalogue = _swept(wanted, choice, folder, at_once, fresh, json)
     with progress(json) as shown:
-        at_once = None if workers is None else int(workers)
         found = results(specs, kept, workers=at_once, fresh=fresh, progress=shown)
     try:
-        tables = wanted.measure(found, choice)
+        tables = wanted.tables(found, catalogue, choice)
         for name, table in tables.items():
             table.write(wanted.file(folder, name))
         wanted.draw(found, tables, choice, wanted.file(folder))
@@ -73,6 +76,25 @@ def draw(
         ) from None
     _print(wanted, tables, folder, json)
     return 0
+
+
+def _swept(
+    wanted: Figure, choice: Choice, folder: Path, workers: int | None, fresh: bool, json: bool
+) -> Catalogue | None:
+    """The sweep of a figure that has one, run as far as it is not stored."""
+    if wanted.swept is None:
+        return None
+    from torsade.sweep import run
+
+    place = folder / "sweeps" / wanted.swept.name
+    with progress(json, now_and_then(), estimate=False) as shown:
+        done = run(wanted.swept.design(choice), place, workers=workers, fresh=fresh, progress=shown)
+    if done.failed:
+        say(
+            f"{done.failed} of {counted(done.points, 'run')} failed and are left out; see why with torsade "
+            f'query {place} "SELECT reason, count(*) FROM runs GROUP BY reason"'
+        )
+    return done.catalogue
 
 
 def _check_files(wanted: Figure, folder: Path) -> None:

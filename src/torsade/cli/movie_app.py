@@ -51,8 +51,9 @@ def _movie(
     colour: Annotated[
         str | None,
         Parameter(
-            help="What colours say: strain, stress (over strength), or strands, one colour for each strand "
-            "or piece [default: stress of rods that break, else strain]."
+            help="What colours say: strain, stress (over strength), energy (per length, of batteries), or "
+            "strands, one colour for each strand or piece [default: stress of rods that break, energy of "
+            "batteries, else strain]."
         ),
     ] = None,
     whole: Annotated[bool, Parameter(help="Hold all of every fiber in view, not the knot alone.")] = False,
@@ -60,7 +61,8 @@ def _movie(
 ) -> int:
     """Make a movie of a result: a knot being pulled, a rod that breaks, whatever was recorded in time.
 
-    Time runs evenly, and between stored frames nodes move straight: record more of them with --frames.
+    Time runs evenly, of batteries ever faster; between stored frames nodes move straight: record more of them
+    with --frames.
 
     Rods that break are drawn three times as thick as they are.
     """

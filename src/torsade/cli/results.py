@@ -110,7 +110,7 @@ def _about(path: Path, result: Result) -> dict[str, Any]:
         "size_bytes": sum(sizes),
         "format": attrs.get("format"),
         "spec": result.spec,
-        "report": _report(path, result),
+        "report": _report(result),
         "provenance": result.provenance,
         "dimensions": {str(name): int(size) for name, size in data.sizes.items()},
         "variables": [
@@ -143,20 +143,9 @@ def _status(path: Path, result: Result) -> str:
     return "stopped" if places.writer(path.with_name(path.name.removesuffix(".part"))) is None else "growing"
 
 
-def _report(path: Path, result: Result) -> dict[str, Any] | None:
+def _report(result: Result) -> dict[str, Any] | None:
     """The numbers that a run prints; None before its end, and of protocols that are not known here."""
-    if not result.complete or result.protocol not in PROTOCOLS:
-        return None
-    try:
-        return PROTOCOLS[result.protocol].report(result)
-    except (LookupError, TypeError, ValueError, AttributeError, OverflowError) as error:
-        if isinstance(error, TorsadeError):
-            raise
-        reason = " ".join(str(error).split()) or type(error).__name__
-        raise TorsadeError(
-            f"the numbers of {str(path)!r} cannot be read ({reason[:120]}); it is damaged, or of another "
-            "version"
-        ) from None
+    return result.report() if result.complete and result.protocol in PROTOCOLS else None
 
 
 def _state(about: dict[str, Any]) -> Iterator[tuple[str, str]]:

@@ -7,12 +7,11 @@ import json as json_format
 import math
 import re
 import sys
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from torsade.cli.commands import progress
+from torsade.cli.commands import now_and_then, progress
 from torsade.cli.messages import say
 from torsade.errors import TorsadeError, counted, quoted
 from torsade.sweep import MOST_POINTS, Catalogue, Rows, Summary, Sweep
@@ -24,9 +23,6 @@ FIRST_POINTS = 5
 
 MOST_ROWS = 40
 """Shown to people; machines get all."""
-
-SAY_EVERY = 30.0
-"""Time between lines about progress where there is no bar [s]."""
 
 
 def sweep(
@@ -54,7 +50,7 @@ def sweep(
     folder = Path(out) if out is not None else Path(Path(file).stem)
     from torsade.sweep import run
 
-    with progress(json, _now_and_then(), estimate=False) as shown:
+    with progress(json, now_and_then(), estimate=False) as shown:
         done = run(
             wanted,
             folder,
@@ -77,20 +73,6 @@ def _whole(option: str, text: str, digits: int) -> int:
     if not re.fullmatch(rf"[1-9]\d{{0,{digits - 1}}}", text, re.A):
         raise TorsadeError(f"{option} is {quoted(text)}; give a whole number from 1 to {10**digits - 1}")
     return int(text)
-
-
-def _now_and_then() -> Callable[[float, str], None]:
-    """Says what it is told, at times."""
-    said = [time.monotonic()]
-
-    def notice(share: float, note: str) -> None:
-        if note.startswith(("compiling", "stopping")):
-            say(note)
-        elif time.monotonic() - said[0] > SAY_EVERY:
-            said[0] = time.monotonic()
-            say(note)
-
-    return notice
 
 
 def _show(wanted: Sweep, most: int, json: bool) -> int:

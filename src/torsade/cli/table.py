@@ -25,9 +25,9 @@ _STAGES = ("start", "top", "end")
 
 def print_table(result: Result, report: dict[str, Any]) -> None:
     """Print what was done and what came of it."""
-    from torsade.cli import batteries_table, rods_table
+    from torsade.cli import batteries_table, rods_table, sutures_table
 
-    own = rods_table.ROWS | batteries_table.ROWS
+    own = rods_table.ROWS | batteries_table.ROWS | sutures_table.ROWS
     if result.protocol in own:
         print_rows(own[result.protocol](result, report))
     else:

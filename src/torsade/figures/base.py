@@ -14,8 +14,9 @@ from torsade.errors import TorsadeError, reason_of
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
     from torsade.results import Result
+    from torsade.sweep import Catalogue, Sweep
 
-__all__ = ["Cell", "Choice", "Figure", "Preset", "Table"]
+__all__ = ["Cell", "Choice", "Figure", "Preset", "Swept", "Table"]
 
 Cell = float | int | str | bool | None
 
@@ -84,6 +85,22 @@ def _text(cell: Cell) -> str:
 
 
 @dataclass(frozen=True)
+class Swept:
+    """Many runs of which a figure needs the numbers alone.
+
+    Attributes
+    ----------
+    name : of their folder
+    design : what is run
+    measure : numbers → tables by name
+    """
+
+    name: str
+    design: Callable[[Choice], Sweep]
+    measure: Callable[[Catalogue, Choice], Mapping[str, Table]]
+
+
+@dataclass(frozen=True)
 class Figure:
     """A figure of the thesis.
 
@@ -93,6 +110,7 @@ class Figure:
     runs : what has to be run, by label
     measure : results by label → tables by name; the one named "" is the main one
     draw : results, tables → a PNG file
+    swept : more runs, whose tables come beside those of `measure`
     """
 
     number: str
@@ -100,6 +118,16 @@ class Figure:
     runs: Callable[[Choice], Mapping[str, Spec]]
     measure: Callable[[Mapping[str, Result], Choice], Mapping[str, Table]]
     draw: Callable[[Mapping[str, Result], Mapping[str, Table], Choice, Path], None]
+    swept: Swept | None = None
+
+    def tables(
+        self, results: Mapping[str, Result], catalogue: Catalogue | None, choice: Choice
+    ) -> dict[str, Table]:
+        """All tables, of runs and of the sweep."""
+        found = dict(self.measure(results, choice))
+        if self.swept is not None and catalogue is not None:
+            found |= self.swept.measure(catalogue, choice)
+        return found
 
     def file(self, folder: Path, table: str | None = None) -> Path:
         """Where its picture goes, or a table of that name."""

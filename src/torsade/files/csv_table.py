@@ -6,7 +6,7 @@ import csv
 from pathlib import Path
 
 from torsade.centerline import Centerline
-from torsade.errors import TorsadeError, quoted
+from torsade.errors import TorsadeError, counted, quoted
 from torsade.files.gathered import Gathered, rows
 from torsade.files.regular import lines
 
@@ -73,7 +73,7 @@ def _separator(line: str, where: str) -> str:
 
 def _strand(cells: list[str], where: str) -> int:
     if len(cells) != 4:
-        raise TorsadeError(f"{where} has {len(cells)} columns; give the four of {HEADER!r}")
+        raise TorsadeError(f"{where} has {counted(len(cells), 'column')}; give the four of {HEADER!r}")
     if not (cells[0].isascii() and cells[0].isdigit() and len(cells[0]) <= 9):
         raise TorsadeError(f"{where} has strand {quoted(cells[0], 40)}; give an integer of at least 0")
     return int(cells[0])

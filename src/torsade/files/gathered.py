@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade.centerline import Centerline
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, named
 from torsade.files.regular import finite_number
 
 __all__ = ["MOST_NODES", "MOST_STRANDS", "Gathered", "made", "rows"]
@@ -32,7 +32,7 @@ class Gathered:
     """
 
     def __init__(self, path: Path) -> None:
-        self.name = repr(str(path))
+        self.name = named(path)
         self.numbers: list[array[float]] = []
         self._nodes = 0
 

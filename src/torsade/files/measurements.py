@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from torsade.errors import QuantityError, TorsadeError, quoted
+from torsade.errors import QuantityError, TorsadeError, counted, named, quoted
 from torsade.files.csv_table import SEPARATORS, cells_of
 from torsade.files.regular import Kind, finite_number, lines
 from torsade.units import is_bearable, quantity
@@ -37,7 +37,7 @@ class Column(NamedTuple):
     dimension : of its numbers, a name in `units.DIMENSIONS`; "" for text, which has no unit
     unit : an example, as it stands in the heading: "deg"
     required : whether a file must have it
-    several : whether a cell may hold several numbers, with blanks or + between them
+    several : whether a cell may hold several numbers, with blanks, semicolons or + between them
     aliases : other names
     """
 
@@ -102,7 +102,7 @@ def read_table(path: Path, columns: Sequence[Column], kind: Kind) -> Table:
         When the file cannot be read, a column is missing or given twice, a heading has no unit or a wrong
         one, or a cell is not a number.
     """
-    name = repr(str(path))
+    name = named(path)
     headings: list[_Heading | None] = []
     texts: list[str] = []
     separator = ""
@@ -120,8 +120,8 @@ def read_table(path: Path, columns: Sequence[Column], kind: Kind) -> Table:
         cells = cells_of(line, separator, where)
         if len(cells) != len(headings):
             raise TorsadeError(
-                f"{where} has {len(cells)} columns where the headings have {len(headings)}; leave cells "
-                "empty that are not known, and write decimals with a point"
+                f"{where} has {counted(len(cells), 'column')} where the headings have {len(headings)}; leave "
+                "cells empty that are not known, and write decimals with a point"
             )
         rows.append(Row(where, _row(cells, headings, where)))
     if not rows:
@@ -206,7 +206,7 @@ def _row(cells: Sequence[str], headings: Sequence[_Heading | None], where: str) 
         elif not column.dimension:
             found[column.name] = cell
         elif column.several:
-            parts = [part for part in re.split(r"[\s+|/]+", cell) if part]
+            parts = [part for part in re.split(r"[\s+|/;]+", cell) if part]
             if len(parts) > MOST_NUMBERS:
                 raise TorsadeError(
                     f"{where} has {len(parts)} numbers in {heading.text}; give at most {MOST_NUMBERS}"

@@ -21,7 +21,7 @@ from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from torsade.centerline import Centerline
-from torsade.errors import TorsadeError, quoted
+from torsade.errors import TorsadeError, named, quoted
 from torsade.files.gathered import MOST_NODES, MOST_STRANDS, made
 from torsade.files.regular import opened
 
@@ -64,14 +64,14 @@ def written_npy(centerline: Centerline) -> bytes:
 
 def read_npy(path: Path) -> Centerline:
     """One array of nodes."""
-    name = repr(str(path))
+    name = named(path)
     with opened(path) as (file, _):
         return made(name, _strands(_array(file, name), name))
 
 
 def read_npz(path: Path) -> Centerline:
     """Arrays `strand0`, `strand1` ... or `x`, and `closed`; others are left out."""
-    name = repr(str(path))
+    name = named(path)
     with opened(path) as (file, size):
         _check_index(file, size, name)
         try:

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
-from torsade.errors import TorsadeError, quoted, reason_of
+from torsade.errors import TorsadeError, named, quoted, reason_of
 from torsade.places import private, writing
 
 __all__ = [
@@ -61,7 +61,7 @@ def opened(path: Path, kind: Kind = NODES) -> Iterator[tuple[BinaryIO, int]]:
         TorsadeError: there is none, it is something else (reading a pipe or a device may never end), it is
             too large, or it cannot be read.
     """
-    name = repr(str(path))
+    name = named(path)
     try:
         found = path.stat()
         if stat.S_ISDIR(found.st_mode):
@@ -89,7 +89,7 @@ def lines(path: Path, kind: Kind = NODES) -> Iterator[tuple[str, str]]:
     Raises:
         TorsadeError: as `opened`; or it is not text in UTF-8, or has a line that does not end.
     """
-    name = repr(str(path))
+    name = named(path)
     binary = f"{name} is not a text file; give numbers as text, in UTF-8"
     with opened(path, kind) as (file, _):
         text = io.TextIOWrapper(file, encoding="utf-8-sig", newline=None)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, counted
 from torsade.files.measurements import Column, Row, read_table
 from torsade.files.regular import Kind
 from torsade.fracture.rod import Rod
@@ -118,7 +118,7 @@ def _trials(rows: Iterable[Row], rod: Rod) -> Iterable[Trial]:
         _check_strain(row, "limit_curvature", limit_curvature, MOST_STRAIN / rod.h, float, "1/m")
         yield Trial(
             where=row.where,
-            pieces=_pieces(row, kept),
+            pieces=_pieces(row, kept, rod),
             lengths=kept,
             flakes=len(lengths) - len(kept),
             twist=0.0 if twist is None else twist,
@@ -185,7 +185,7 @@ def _lengths(row: Row, rod: Rod) -> tuple[float, ...]:
     return lengths
 
 
-def _pieces(row: Row, kept: tuple[float, ...]) -> int:
+def _pieces(row: Row, kept: tuple[float, ...], rod: Rod) -> int:
     """Number of pieces: as given, or as many as there are lengths."""
     given = _one(row, "pieces")
     if given is None:
@@ -205,5 +205,10 @@ def _pieces(row: Row, kept: tuple[float, ...]) -> int:
         raise TorsadeError(
             f"{row.where} has {len(kept)} lengths above the radius and pieces = {given:g}; give as many "
             "pieces as lengths, or more where some were not measured"
+        )
+    if len(kept) < given and sum(kept) > (1 - TOLERANCE / 10) * rod.L:
+        raise TorsadeError(
+            f"{row.where} has pieces = {given:g} and {counted(len(kept), 'length')} that fill the rod of "
+            f"{1e3 * rod.L:g} mm already; give as many pieces as lengths"
         )
     return int(given)

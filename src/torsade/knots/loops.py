@@ -20,10 +20,14 @@ from torsade.knots.tight import TightKnot, tighten
 from torsade.topology.named import looks_like_a_name
 from torsade.topology.names import UNKNOT
 
-__all__ = ["SPACING", "TightLoop", "tight_loop", "tightest"]
+__all__ = ["MIRROR", "SPACING", "TightLoop", "tight_loop", "tightest"]
 
 SPACING = 0.4
 """Of nodes of the loops that are shipped [radii]."""
+
+
+MIRROR = np.array([1.0, 1.0, -1.0])
+"""Factors of coordinates in a mirror at z = 0."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,10 +37,12 @@ class TightLoop:
     Attributes:
         name: of the knot, or the code that it was asked for by.
         nodes: shape (n, 3), in radii of the fiber: read-only.
+        mirrored: whether they are those of the shape that is shipped, seen in a mirror at z = 0.
     """
 
     name: str
     nodes: Floats
+    mirrored: bool = False
 
     @property
     def ropelength(self) -> float:
@@ -60,17 +66,18 @@ def tight_loop(name: str) -> TightLoop:
         TorsadeError: as `known_closed` does.
     """
     name = known_closed(name)
-    plain = name.removeprefix("m")
+    plain, mirrored = name.removeprefix("m"), False
     if plain == UNKNOT:
         nodes = _circle()
     elif plain in _shipped():
         nodes = np.array(_shipped()[plain]["nodes"])
-        if name != plain:
-            nodes = nodes * [1.0, 1.0, -1.0]
+        mirrored = name != plain
+        if mirrored:
+            nodes = nodes * MIRROR
     else:
         nodes = np.array(_tightened(name).strands[0])
     nodes.flags.writeable = False
-    return TightLoop(name, nodes)
+    return TightLoop(name, nodes, mirrored)
 
 
 def tightest(name: str) -> TightKnot:

@@ -43,19 +43,17 @@ class Bordered:
             self.negative += int((np.linalg.eigvalsh(0.5 * (self._schur + self._schur.T)) < 0).sum())
 
     def solve(self, r: Floats, s: Floats) -> tuple[Floats, Floats]:
-        """Solutions dq (n,) and ds (k,) for right-hand sides r (n,) and s (k,), refined."""
-        dq, ds = self._once(r, s)
-        product = np.empty((len(r), 1))
-        for _ in range(REFINEMENTS):
-            banded.multiply(self._band, dq[:, None], product)
-            left = r - product[:, 0] - self._shift * dq - self._right @ ds
-            below = s - self._left.T @ dq - self._corner @ ds
-            more = self._once(left, below)
-            dq, ds = dq + more[0], ds + more[1]
-        return dq, ds
+        """Solutions dq (n,) and ds (k,) for right-hand sides r (n,) and s (k,), refined.
 
-    def _once(self, r: Floats, s: Floats) -> tuple[Floats, Floats]:
-        x = np.ascontiguousarray(r[:, None]).copy()
-        banded.solve(self._factor, x)
-        ds = np.linalg.solve(self._schur, s - self._left.T @ x[:, 0]) if len(s) else np.zeros(0)
-        return np.asarray(x[:, 0] - self._inner @ ds), np.asarray(ds)
+        Raises
+        ------
+        numpy.linalg.LinAlgError
+            When constraints depend on each other.
+        """
+        border, reduced = (self._right, self._left, self._corner), (self._inner, self._schur)
+        dq, ds, regular = banded.solve_bordered(
+            self._band, self._shift, self._factor, border, reduced, r, s, REFINEMENTS
+        )
+        if not regular:
+            raise np.linalg.LinAlgError("constraints depend on each other")
+        return dq, ds

@@ -27,13 +27,21 @@ import numpy as np
 
 from torsade.arrays import Bools, Floats, Ints
 from torsade.assembly import Assembly
-from torsade.rod import elasticity, hessian, kinematics
-from torsade.rod.banded import reduce_blocks
+from torsade.motion import chain_kernels
+from torsade.motion.chain_kernels import (
+    FIXED,
+    FREE,
+    HINGES,
+    LAST_ANGLE,
+    NOTHING,
+    PLANE,
+    SPHERE,
+    Derivatives,
+    Rules,
+)
+from torsade.rod import elasticity
 
 __all__ = ["FIXED", "FREE", "PLANE", "SPHERE", "Chain", "Controls", "Shape", "System"]
-
-FIXED, PLANE, SPHERE, FREE = 0, 1, 2, 3
-"""What an edge may do: nothing, turn in a plane, turn, turn and stretch."""
 
 
 class Controls(NamedTuple):
@@ -210,14 +218,8 @@ class Chain(NamedTuple):
 
     def moved(self, shape: Shape, change: Floats) -> Shape:
         """The shape after a change (n_edges, 4) of its edges and angles; directors are carried along."""
-        length, tangent = _directions(shape.edge)
-        step = change[:, :3] / length[:, None]
-        angle = np.linalg.norm(step, axis=1)[:, None]
-        turned = length[:, None] * (np.cos(angle) * tangent + np.sinc(angle / np.pi) * step)
-        edge = np.where(self.spheres[:, None], turned, shape.edge + change[:, :3])
-        after = _directions(edge)[1]
-        twist = np.empty(len(self.assembly.hinges))
-        kinematics.reference_twist_change(self.assembly, tangent, after, twist)
+        edge, twist = np.empty_like(shape.edge), np.empty(len(self.assembly.hinges))
+        chain_kernels.turn(shape.edge, change, self.freedom, self.assembly, edge, twist)
         return shape._replace(
             edge=edge, theta=shape.theta + change[:, 3], reference_twist=shape.reference_twist + twist
         )
@@ -226,34 +228,43 @@ class Chain(NamedTuple):
         """First and second derivatives of the Lagrangian at a shape."""
         a = self.assembly
         n, k = len(a.edges), len(self.weight)
-        length, tangent = _directions(shape.edge)
+        d = (3 if self.EA > 0 else 2) + int(self.angles)
         torque = shape.torque if self.rotation_held else controls.torque
         if self.angles:
             stiffness = self.C / a.hinge_length
             moment = stiffness * self.hinge_twist(shape)
         else:
             stiffness, moment = np.zeros(len(a.hinges)), np.full(len(a.hinges), torque)
-        gradient, own, beside = np.empty((n, 4)), np.empty((n, 4, 4)), np.empty((n - 1, 4, 4))
-        hessian.elastic_derivatives(
-            a, self.EA, self.B, False, length, tangent, moment, stiffness, gradient, own, beside
+        out = Derivatives(
+            np.empty((n, 4, d)),
+            np.empty(n * d),
+            np.empty((n * d, 2 * d)),
+            np.empty((n * d, self.held)),
+            np.empty(k),
         )
-        gradient[:, :3] -= controls.load + np.einsum("k,kec->ec", shape.reaction, self.weight)
-        if self.angles:
-            gradient[-1, 3] -= torque
-        basis, extra = self._basis(shape.edge, length, tangent, gradient)
-        d = basis.shape[2]
-        band = np.empty((n * d, 2 * d))
-        reduce_blocks(own, beside, basis, extra, band)
-        rows = [-np.einsum("kec,ecd->ked", self.weight, basis[:, :3]).reshape(k, n * d)]
-        gap = [-self.gap(shape, controls)]
+        rules = Rules(self.freedom, self.normal, self.mass, self.weight, self.angles)
+        rotation = (LAST_ANGLE if self.angles else HINGES) if self.rotation_held else NOTHING
+        end_torque = torque if self.angles else 0.0
+        chain_kernels.derivatives(
+            a,
+            self.EA,
+            self.B,
+            rules,
+            shape.edge,
+            shape.reaction,
+            controls.load,
+            moment,
+            stiffness,
+            end_torque,
+            rotation,
+            out,
+        )
+        gap = controls.value - out.gap
         corner = np.zeros((self.held, self.held))
         if self.rotation_held:
-            by_rotation, short, corner[k, k] = self._rotation_row(shape, controls, length, tangent)
-            rows.append(np.einsum("ec,ecd->ed", by_rotation, basis).reshape(1, n * d))
-            gap.append(np.array([short]))
-        residual = np.einsum("ec,ecd->ed", gradient, basis).ravel()
-        border = np.ascontiguousarray(np.concatenate(rows).T)
-        return System(residual, np.concatenate(gap), band, border, corner, basis)
+            short, corner[k, k] = self._rotation_gap(shape, controls)
+            gap = np.append(gap, short)
+        return System(out.residual, gap, out.band, out.border, corner, out.basis)
 
     def by_path(self, shape: Shape, system: System, path: Controls) -> tuple[Floats, Floats]:
         """Derivative of residual (n,) and gap (k,) as controls change at the rates `path`."""
@@ -267,67 +278,22 @@ class Chain(NamedTuple):
         below = np.append(path.value, path.rotation) if self.rotation_held else path.value
         return np.einsum("ec,ecd->ed", change, system.basis).ravel(), below
 
-    def _rotation_row(
-        self, shape: Shape, controls: Controls, length: Floats, tangent: Floats
-    ) -> tuple[Floats, float, float]:
-        """Gradient (n_edges, 4) by M_t, the gap of the rotation and what stands on the diagonal."""
+    def _rotation_gap(self, shape: Shape, controls: Controls) -> tuple[float, float]:
+        """How far the rotation is from what is given, and what stands on the diagonal."""
         if self.angles:
-            last = np.zeros((len(shape.edge), 4))
-            last[-1, 3] = -1.0
-            return last, controls.rotation - float(shape.theta[-1]), 0.0
+            return controls.rotation - float(shape.theta[-1]), 0.0
         ease = self.twisted_length / self.C
-        short = controls.rotation + shape.turned - shape.torque * ease
-        return self.twist_gradient(length, tangent), short, -ease
+        return controls.rotation + shape.turned - shape.torque * ease, -ease
 
     def twist_gradient(self, length: Floats, tangent: Floats) -> Floats:
         """dR/d(e, theta) (n_edges, 4) of the reference twist of the whole fiber."""
-        a, b = tangent[:-1], tangent[1:]
-        half = _cross(a, b) / (1.0 + np.einsum("kc,kc->k", a, b))[:, None]
-        out = np.zeros((len(length), 4))
-        out[:-1, :3] += half / length[:-1, None]
-        out[1:, :3] += half / length[1:, None]
+        out = np.empty((len(length), 4))
+        chain_kernels.twist_gradient(length, tangent, out)
         return out
-
-    def _basis(
-        self, edge: Floats, length: Floats, tangent: Floats, gradient: Floats
-    ) -> tuple[Floats, Floats]:
-        """Directions of motion (n_edges, 4, d), and what the curvature of spheres adds to the Hessian."""
-        n, root = len(edge), np.sqrt(self.mass)
-        turns = 3 if self.EA > 0 else 2
-        basis = np.zeros((n, 4, turns + int(self.angles)))
-        first, second = across(tangent)
-        planar = self.freedom == PLANE
-        first[planar] = _cross(self.normal[planar], tangent[planar])
-        scale = np.where(self.spheres, length / root, root)[:, None]
-        basis[:, :3, 0] = np.where((self.freedom >= PLANE)[:, None], first * scale, 0.0)
-        basis[:, :3, 1] = np.where((self.freedom >= SPHERE)[:, None], second * scale, 0.0)
-        if turns == 3:
-            basis[:, :3, 2] = np.where((self.freedom == FREE)[:, None], tangent * scale, 0.0)
-        if self.angles:
-            basis[1:, 3, -1] = 1.0 / root[1:]
-        still = np.abs(basis).max(axis=1) == 0.0
-        curved = np.where(self.spheres, -np.einsum("ec,ec->e", edge, gradient[:, :3]) / self.mass, 0.0)
-        extra = np.where(still, self.B / self.mass[:, None] ** 2, 0.0)
-        extra[:, :turns] += np.where(still[:, :turns], 0.0, curved[:, None])
-        return basis, extra
-
-
-def across(tangent: Floats) -> tuple[Floats, Floats]:
-    """Two unit vectors (n, 3) across every tangent and each other."""
-    axis = np.zeros_like(tangent)
-    axis[np.arange(len(tangent)), np.abs(tangent).argmin(axis=1)] = 1.0
-    first = _cross(axis, tangent)
-    first /= np.linalg.norm(first, axis=1)[:, None]
-    return first, _cross(tangent, first)
-
-
-def _cross(a: Floats, b: Floats) -> Floats:
-    """Vector products of rows (n, 3); numpy's own takes several times as long for a few hundred."""
-    (x, y, z), (u, v, w) = a.T, b.T
-    return np.column_stack([y * w - z * v, z * u - x * w, x * v - y * u])
 
 
 def _directions(edge: Floats) -> tuple[Floats, Floats]:
     """Lengths (n,) and unit tangents (n, 3) of edge vectors."""
-    length = np.linalg.norm(edge, axis=1)
-    return length, edge / length[:, None]
+    length, tangent = np.empty(len(edge)), np.empty_like(edge)
+    chain_kernels.directions(edge, length, tangent)
+    return length, tangent

@@ -9,6 +9,7 @@ import numpy as np
 from torsade.arrays import Bools, Floats
 from torsade.assembly import Assembly
 from torsade.errors import TorsadeError
+from torsade.rod.skin import Skin
 
 
 class Boundary(NamedTuple):
@@ -22,6 +23,7 @@ class Boundary(NamedTuple):
     turned : (n_edges,) edges that spin as prescribed
     spin : (n_edges,) spin of turned edges [rad/s], zero elsewhere
     torque : (n_edges,) external torque about the tangent [N m]
+    skin : cylinders that fibers press and drag, or ()
     """
 
     held: Bools
@@ -30,6 +32,7 @@ class Boundary(NamedTuple):
     turned: Bools
     spin: Floats
     torque: Floats
+    skin: Skin | tuple[()] = ()
 
 
 def free(assembly: Assembly) -> Boundary:

@@ -249,6 +249,9 @@ class Motion:
         if status == stepping.CROSSING:
             places = []
             for edge in self._clock.culprit:
+                if edge >= len(self.assembly.edges):
+                    places.append(f"skin {'ab'[edge - len(self.assembly.edges)]}")
+                    continue
                 fiber = int(self.assembly.edge_fiber[edge])
                 place = 1e3 * self.state.x[self.assembly.edges[edge, 0]]
                 at = ", ".join(f"{c:.2f}" for c in place)

@@ -38,6 +38,16 @@ from torsade.rod.elasticity import (
 from torsade.rod.factor import Factor, serves
 from torsade.rod.kinematics import edge_geometry, reference_twist_change
 from torsade.rod.neighbours import edge_midpoints
+from torsade.rod.skin import (
+    MOST_ROUNDS,
+    SETTLED,
+    add_skin_forces,
+    add_skin_torques,
+    join_skin,
+    on_skin,
+    power_of_skin,
+    weigh_skin,
+)
 
 OK = 0
 LOOSE = 1
@@ -120,6 +130,7 @@ def forces(
     edge_midpoints(x, a.edges, w.mid)
     find_contacts(m, w.mid, contacts)
     add_contact_forces(a, m, length, tangent, contacts, force)
+    add_skin_forces(a, m, bc.skin, x, w.mid, force)
 
 
 def _label_components(edge_fiber: Ints, contacts: Contacts, component: Ints) -> None:
@@ -161,8 +172,9 @@ def hold_bodies(a: Assembly, bc: Boundary, contacts: Contacts, held: Bools, comp
     for i in range(held.shape[0]):
         held[i] = fixed[i]
     _label_components(a.edge_fiber, contacts, component)
+    join_skin(a, bc.skin, component)
     for b in range(component.shape[0]):
-        if component[b] != b or _anchored(b, component, node_start, fixed):
+        if component[b] != b or _anchored(b, component, node_start, fixed) or on_skin(bc.skin, b, component):
             continue
         fx = 0.0
         fy = 0.0
@@ -255,8 +267,14 @@ def rates(
     if hold_bodies(a, bc, contacts, w.held, w.component) != OK:
         return LOOSE
     _ground_guess(a, bc, v, w.held, w.component)
-    if not solve_mobility(a, m.eta_A, contacts, factor, w.force, w.held, tolerance, v, w.mobility):
-        return UNSOLVED
+    for k in range(MOST_ROUNDS):
+        change = weigh_skin(a, m, bc.skin, v)
+        if k > 0 and change < SETTLED:
+            break
+        if not solve_mobility(
+            a, m.eta_A, contacts, factor, bc.skin, w.force, w.held, tolerance, v, w.mobility
+        ):
+            return UNSOLVED
     _centre_floating(a, bc, v, w.held, w.component)
     torque, drag_torque, spin_weight = w.torque, w.drag_torque, w.spin_weight
     for e in range(omega.shape[0]):
@@ -264,6 +282,7 @@ def rates(
         spin_weight[e] = 0.0
     if m.eta_f_J > 0.0:
         add_drag_torques(a, m, v, w.tangent, contacts, drag_torque, spin_weight)
+        add_skin_torques(a, m, bc.skin, v, w.tangent, drag_torque, spin_weight)
     for e in range(omega.shape[0]):
         angular[e] = torque[e] + drag_torque[e]
     solve_spin(a, m.eta_J, w.tangent, angular, spin_weight, bc.turned, bc.spin, omega, w.spin)
@@ -330,7 +349,7 @@ def powers(
         else:
             dissipated += omega[e] * torque[e]
     if moved:
-        lost = power_of_drag(a, m.eta_A, contacts, v, held)
+        lost = power_of_drag(a, m.eta_A, contacts, v, held) + power_of_skin(a, bc.skin, v, held)
         dissipated += lost
         external += lost
         for i in range(v.shape[0]):

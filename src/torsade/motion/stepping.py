@@ -10,6 +10,7 @@ from torsade.assembly import Assembly, State
 from torsade.motion.ends import Boundary
 from torsade.motion.guard import largest_move
 from torsade.motion.near import Near, crossing, find_near, list_near
+from torsade.motion.piercing import pierced
 from torsade.motion.rates import DENSE, LOOSE, OK, STALE
 from torsade.motion.scheme import (
     ONE_STAGE,
@@ -125,6 +126,7 @@ def _verdict(status: int) -> int:
 
 def _judge(
     a: Assembly,
+    bc: Boundary,
     state: State,
     near: Near,
     control: Control,
@@ -148,6 +150,8 @@ def _judge(
     if not move < 1e300:
         return 8.0, UNSOLVABLE
     clock.culprit[0], clock.culprit[1] = crossing(a, control, near, state.x, g.x, g.length, g.mid, move)
+    if clock.culprit[0] < 0:
+        clock.culprit[0], clock.culprit[1] = pierced(a, bc.skin, state.x, g.x)
     if clock.culprit[0] >= 0:
         return 8.0, CROSSING
     if control.fixed_step == 0.0 and move > control.move:
@@ -220,7 +224,7 @@ def advance(
         if job == SPECTRUM:
             _take_spectrum(g, clock)
             continue
-        ratio, judged = _judge(a, state, near, control, status, dt, g, clock)
+        ratio, judged = _judge(a, bc, state, near, control, status, dt, g, clock)
         if judged != REACHED:
             clock.count[1] += 1
             clock.time[1] = dt * max(0.1, 0.8 * ratio ** (-1.0 / 3.0))

@@ -12,6 +12,7 @@ from torsade.protocols.prison_escape import PrisonEscape
 from torsade.protocols.reidemeister import Reidemeister
 from torsade.protocols.snap_quench import SnapQuench
 from torsade.protocols.snap_twist import SnapTwist
+from torsade.protocols.suture import Suture
 from torsade.protocols.tighten import Tighten
 
 __all__ = [
@@ -24,6 +25,7 @@ __all__ = [
     "SnapQuench",
     "SnapTwist",
     "Spec",
+    "Suture",
     "Tighten",
     "ensemble",
     "load_spec",

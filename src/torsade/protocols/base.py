@@ -16,11 +16,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from torsade.errors import QuantityError, TorsadeError
+from torsade.errors import TorsadeError
 from torsade.material import Material, Section
 from torsade.material import preset as material_preset
 from torsade.protocols.sentences import sentence
-from torsade.units import Length, Number, Pressure
+from torsade.units import Length, Number, Pressure, Whole
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -189,19 +189,12 @@ class Trial(NamedTuple):
 class Driven(Spec):
     """A specification of something that goes on in time, recorded as it does."""
 
-    frames: int = Field(
+    frames: Whole = Field(
         100,
         ge=1,
         le=1_000_000,
         description="Frames to record after the one at t = 0, evenly spaced: N of them end N intervals.",
     )
-
-    @field_validator("frames", mode="before")
-    @classmethod
-    def _no_truth_value(cls, value: object) -> object:
-        if isinstance(value, bool):
-            raise QuantityError(f"is {value}; give a whole number")
-        return value
 
     def run(
         self,

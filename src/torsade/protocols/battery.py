@@ -10,16 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from torsade.errors import QuantityError, TorsadeError
+from torsade.errors import TorsadeError
 from torsade.protocols.base import Driven, Positive, Progress, Trial
-from torsade.units import Number, Time, Viscosity
+from torsade.units import Number, Time, Viscosity, Whole
 
 if TYPE_CHECKING:
     from torsade.arrays import Floats
     from torsade.assembly import Assembly, State
     from torsade.motion.overdamped import Laws, Motion, Stepping
     from torsade.protocols.charging import Charge
-    from torsade.protocols.discharge import Discharge
     from torsade.results import Result
     from torsade.rod.contact import Model
 
@@ -49,9 +48,6 @@ FIRST_FRAME, FIRST_SAMPLE = 1e-3, 1e-4
 
 SAMPLES = 240
 """Evenly spaced in the logarithm of time."""
-
-SHARES = (50, 10, 1)
-"""Per cents of the energy at the cut, down to which discharge times are measured."""
 
 SILENT: Progress = lambda share, note: None  # noqa: E731
 
@@ -105,11 +101,8 @@ class Battery(Driven):
     eta_f_ratio: Annotated[Number, Positive] = Field(
         0.1, description="Collision viscosity over internal viscosity, eta_f/eta.", examples=["0.1"]
     )
-    nodes: int | None = Field(
-        None,
-        ge=16,
-        le=10_000,
-        description="Nodes of the closed fiber; by default two for every radius of length.",
+    nodes: Annotated[Whole, Field(ge=16, le=10_000)] | None = Field(
+        None, description="Nodes of the closed fiber; by default two for every radius of length."
     )
     tolerance: Annotated[Number, Positive] | None = Field(
         None,
@@ -122,7 +115,7 @@ class Battery(Driven):
         "shapes that are at rest but not stable.",
         examples=["0.01"],
     )
-    seed: int = Field(0, ge=0, le=2**63 - 1, description="Of that displacement.")
+    seed: Whole = Field(0, ge=0, le=2**63 - 1, description="Of that displacement.")
     charging: Annotated[Time, Positive] | None = Field(
         None,
         description="Longest time to come to rest before the cut; by default 100 T_0.",
@@ -131,7 +124,7 @@ class Battery(Driven):
     duration: Annotated[Time, Positive] | None = Field(
         None, description="Longest time to follow it after the cut; by default 100 T_0.", examples=["10 s"]
     )
-    frames: int = Field(
+    frames: Whole = Field(
         60,
         ge=1,
         le=1_000_000,
@@ -144,13 +137,6 @@ class Battery(Driven):
         from torsade.knots.finding import known_closed
 
         return known_closed(name)
-
-    @field_validator("nodes", "seed", mode="before")
-    @classmethod
-    def _no_truth_value_either(cls, value: object) -> object:
-        if isinstance(value, bool):
-            raise QuantityError(f"is {value}; give a whole number")
-        return value
 
     @model_validator(mode="after")
     def _movable(self) -> Battery:
@@ -224,7 +210,7 @@ class Battery(Driven):
 
         from torsade.assembly import assemble, initial_state, twisted
         from torsade.centerline import Centerline, check
-        from torsade.knots.loops import tight_loop
+        from torsade.knots.loops import MIRROR, tight_loop
         from torsade.protocols.charging import trembled
 
         loop, n, L = tight_loop(self.knot), self.node_count, self.fiber_length
@@ -242,7 +228,10 @@ class Battery(Driven):
                 f"{n} nodes are {apart:.2g} radii apart, and strands could slip through; give at least "
                 f"{math.ceil(n * apart / FARTHEST_NODES)} nodes"
             )
-        x = trembled(loop.fiber(L * max(1.0, 1 + stretch), n), self.noise * self.h, self.seed)
+        # What is done to a knot is done to its mirror image mirrored: the tremor too.
+        sides = MIRROR if loop.mirrored else np.ones(3)
+        x = loop.fiber(L * max(1.0, 1 + stretch), n)
+        x = trembled(x * sides, self.noise * self.h, self.seed) * sides
         check(Centerline((x,), (True,)), self.h)
         assembly = assemble([x], [True], [np.full(n, L / n)])
         return assembly, twisted(assembly, initial_state(assembly, [x]), self.twist / self.h)
@@ -271,6 +260,7 @@ class Battery(Driven):
     def prepared(self, tell: Progress) -> Trial:
         import numpy as np
 
+        from torsade.protocols.battery_numbers import Units, concluded
         from torsade.protocols.discharge import NAMES, SAMPLED, Discharge, hinge_at, hinge_to_cut
         from torsade.protocols.driving import preparation
         from torsade.protocols.shapes import check_count, check_frames
@@ -289,11 +279,12 @@ class Battery(Driven):
         fixed = {f"charge_{name}": (_dims(name), values) for name, values in charge.history.items()}
         place = float(a.rest_length[: a.hinges[hinge, 2]].sum() / a.fiber_length[0])
         at_cut = {"steps": closed.steps, "place": place, **cut.energies()._asdict()}
+        units = Units(self.unit_time, self.unit_energy)
         return Trial(
             cut,
             NAMES,
             cut.frame,
-            lambda samples, loose_at: self._concluded(samples, charge, at_cut, cut),
+            lambda samples, loose_at: concluded(units, self.knot, samples, charge, at_cut, cut),
             sizes={"fiber": 1, "node": self.node_count + 1, "edge": self.node_count},
             fixed=fixed
             | {
@@ -321,64 +312,12 @@ class Battery(Driven):
             else np.array([0.0, self.lasting])
         )
 
-    def _concluded(
-        self, samples: Mapping[str, Floats], charge: Charge, at_cut: Mapping[str, float], cut: Discharge
-    ) -> dict[str, Any]:
-        """Numbers and lists that belong to the run as a whole."""
-        import numpy as np
-
-        from torsade.protocols.discharge import crossing_losses, discharge_times
-
-        unit, history, energy = self.unit_time, charge.history, samples["energy"]
-        shares = discharge_times(samples["time"], energy, [share / 100 for share in SHARES])
-        kinds = ("bend", "twist", "stretch", "contact")
-        lost = crossing_losses(samples["time"], samples["fewest_crossings"])
-        cut_energies = {kind: at_cut[kind] / self.unit_energy for kind in kinds}
-        return {
-            "T0_s": unit,
-            "E0_J": self.unit_energy,
-            **{name: float(history[name][-1]) for name in ("link", "twist", "writhe")},
-            "link_error": float(np.abs(history["link"] - history["link"][0]).max()),
-            "charge_knots": list(charge.knots),
-            "charge_steps": int(at_cut["steps"]),
-            "charged_in_T0": float(history["time"][-1]) / unit,
-            "loss_per_T0": charge.loss,
-            "energy_E0": cut_energies | {"total": sum(cut_energies.values())},
-            "energy_final_E0": float(energy[-1]) / self.unit_energy,
-            "cut_at": at_cut["place"],
-            "discharge_time_T0": {
-                str(share): None if t is None else t / unit for share, t in zip(SHARES, shares, strict=True)
-            },
-            "crossings_lost_T0": [t / unit for t in lost],
-            "frame_knots": [name for _, name in cut.knots],
-            "power_E0_per_T0": float(_power(samples)) * unit / self.unit_energy,
-            "balance_error": float(
-                abs(energy[0] - energy[-1] - samples["dissipation"][-1]) / max(energy[0], 1e-300)
-            ),
-        }
-
     @classmethod
     def report(cls, result: Result) -> dict[str, Any]:
         """The numbers of a result under the keys of `--json`."""
-        attrs = result.dataset.attrs
-        names = attrs["frame_knots"]
-        runs = [k for k, name in enumerate(names) if k == 0 or name != names[k - 1]]
-        times = result.dataset["time"].values / attrs["T0_s"]
-        kept = ("link", "twist", "writhe", "link_error", "energy_E0", "energy_final_E0", "cut_at")
-        later = ("discharge_time_T0", "crossings_lost_T0", "power_E0_per_T0", "balance_error", "T0_s", "E0_J")
-        return {
-            "protocol": "battery",
-            "knot": attrs["knot"],
-            "twist_density": result.spec["twist"],
-            **{name: attrs[name] for name in (*kept, *later)},
-            "charged_in_T0": attrs["charged_in_T0"],
-            "loss_per_T0": attrs["loss_per_T0"],
-            "intermediate_knots": list(dict.fromkeys(n for n in names if n not in (names[0], names[-1]))),
-            "knots": [{"knot": names[k], "from_T0": float(times[k])} for k in runs],
-            "charge_steps": attrs["charge_steps"],
-            "steps": attrs["steps"],
-            "wall_s": attrs["wall_s"],
-        }
+        from torsade.protocols.battery_numbers import reported
+
+        return reported(result)
 
 
 def _dims(name: str) -> tuple[str, ...]:
@@ -386,12 +325,3 @@ def _dims(name: str) -> tuple[str, ...]:
     from torsade.variables import VARIABLES
 
     return VARIABLES[f"charge_{name}"][0]
-
-
-def _power(samples: Mapping[str, Floats]) -> float:
-    """The greatest power between samples [W]."""
-    import numpy as np
-
-    if len(samples["time"]) < 2:
-        return 0.0
-    return float((-np.diff(samples["energy"]) / np.diff(samples["time"])).max())

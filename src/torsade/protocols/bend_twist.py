@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
-from torsade.errors import QuantityError, TorsadeError
+from torsade.errors import TorsadeError
 from torsade.protocols.base import Positive
 from torsade.protocols.still import Found, Still
-from torsade.units import Angle, Length
+from torsade.units import Angle, Length, Whole
 
 if TYPE_CHECKING:
     from torsade.arrays import Floats
@@ -57,19 +57,12 @@ class BendTwist(Still):
     material: str = Field(
         "spaghetti", description="Preset of the fiber: nylon, optomechanical, spaghetti or silicone."
     )
-    nodes: int = Field(201, ge=5, le=MOST_NODES, description="Nodes, evenly spaced.")
+    nodes: Whole = Field(201, ge=5, le=MOST_NODES, description="Nodes, evenly spaced.")
     end_distance_error: Annotated[Length, Field(ge=0)] | None = Field(
         None,
         description="How far the distance may be off; the curvature's range follows. By default it is exact.",
         examples=["1 mm"],
     )
-
-    @field_validator("nodes", mode="before")
-    @classmethod
-    def _no_truth_value(cls, value: object) -> object:
-        if isinstance(value, bool):
-            raise QuantityError(f"is {value}; give a whole number")
-        return value
 
     @model_validator(mode="after")
     def _bent(self) -> BendTwist:

@@ -19,11 +19,20 @@ from torsade.motion.moving import Guided, Outcome
 from torsade.motion.overdamped import Energies, Motion, Stepping
 from torsade.rod.contact import Model
 from torsade.topology.fewest import fewest_crossings
-from torsade.topology.identify import identify_open
+from torsade.topology.identify import name_open
 from torsade.topology.measures import average_crossing_number, writhe
 from torsade.topology.names import UNKNOT
 
-__all__ = ["NAMES", "SAMPLED", "Discharge", "crossing_losses", "discharge_times", "hinge_at", "hinge_to_cut"]
+__all__ = [
+    "NAMES",
+    "SAMPLED",
+    "Discharge",
+    "crossing_losses",
+    "discharge_times",
+    "hinge_at",
+    "hinge_to_cut",
+    "mean_on_the_way",
+]
 
 NAMES = (
     "time",
@@ -44,7 +53,7 @@ NAMES = (
 )
 """Of what `Discharge.frame` gives."""
 
-SAMPLED = ("energy", "dissipation", "fewest_crossings")
+SAMPLED = ("energy", "dissipation", "fewest_crossings", "non_planarity", "torsion")
 """Of what `Discharge.sample` gives."""
 
 EMPTY = 1e-3
@@ -52,6 +61,9 @@ EMPTY = 1e-3
 
 DIRECTIONS = 12
 """In which the ends are led away when the open strand is identified."""
+
+HARDLY = 0.1
+"""Motion of all nodes that leaves a knot its name, from where it was named on [radii]."""
 
 DRAWN_IN = 1e-4
 """How far ends are drawn in where the shape of the strand is looked at, in edges."""
@@ -97,6 +109,7 @@ class Discharge(Guided[Motion]):
         self._first = self.motion.energies().total
         self._across = _pairs_across(assembly, model.exclusion_length)
         self._apart = False
+        self._named = np.zeros_like(cut.x)
 
     def advance(self, until: float, max_steps: int = 2**62) -> Outcome:
         """Advance to the time until [s], in at most max_steps steps; OVER when the battery is empty.
@@ -133,8 +146,7 @@ class Discharge(Guided[Motion]):
         assembly, state, energies = motion.assembly, motion.state, self.energies()
         x = _drawn_in(state.x)
         fewest = fewest_crossings(x, False)
-        name = identify_open(x, DIRECTIONS).name if fewest else UNKNOT
-        self.knots.append((motion.time, name))
+        self.knots.append((motion.time, self._name(x, fewest)))
         return {
             "time": motion.time,
             "energy_stretch": energies.stretch,
@@ -153,12 +165,23 @@ class Discharge(Guided[Motion]):
             "energy_density": observables.energy_density(assembly, state, self._material, self._section),
         }
 
+    def _name(self, x: Floats, fewest: int) -> str:
+        """Which knot the strand (n, 3) is; what has hardly moved since it was named is not named anew."""
+        moved = np.linalg.norm(x - self._named, axis=1).max() if self.knots else np.inf
+        if fewest and moved < HARDLY * self._section.h:
+            return self.knots[-1][1]
+        self._named = x
+        return name_open(x, DIRECTIONS) if fewest else UNKNOT
+
     def sample(self) -> dict[str, float]:
         """The present values of `SAMPLED`."""
+        x = self.motion.state.x
         return {
             "energy": self.energies().total,
             "dissipation": self.motion.dissipation,
-            "fewest_crossings": fewest_crossings(_drawn_in(self.motion.state.x), False),
+            "fewest_crossings": fewest_crossings(_drawn_in(x), False),
+            "non_planarity": observables.non_planarity(x),
+            "torsion": observables.mean_torsion(x, self._section.h),
         }
 
     def warm_up(self) -> None:
@@ -168,12 +191,14 @@ class Discharge(Guided[Motion]):
     def saved(self) -> dict[str, NDArray[Any]]:
         """Copies of the arrays that decide how the motion goes on, by name, and the knots so far."""
         knots = np.frombuffer(json.dumps(self.knots).encode(), dtype=np.uint8)
-        return self.motion.saved() | {"knots": knots, "apart": np.array(self._apart)}
+        own = {"knots": knots, "apart": np.array(self._apart), "named": self._named.copy()}
+        return self.motion.saved() | own
 
     def recover(self, saved: Mapping[str, NDArray[Any]]) -> None:
         """Go on from the arrays that `saved` gave."""
         self.motion.recover(saved)
         self.knots = [(float(t), str(name)) for t, name in json.loads(saved["knots"].tobytes())]
+        self._named = np.array(saved["named"])
         if saved["apart"] and not self._apart:
             self._part()
 
@@ -221,3 +246,20 @@ def crossing_losses(time: Floats, crossings: Floats) -> list[float]:
     most = int(crossings[0])
     since = [int(np.flatnonzero(crossings >= k)[-1]) + 1 for k in range(most, 0, -1)]
     return [float(time[i]) for i in since if i < len(time)]
+
+
+def mean_on_the_way(energy: Floats, values: Floats, between: tuple[float, float]) -> float | None:
+    """Mean of values (n,) over the logarithm of the energy (n,), from one share of its first to another.
+
+    How long a shape stays does not count, but how much energy it gives off. None where the second share is
+    not reached, or the energy passes both between two samples.
+    """
+    share = np.minimum.accumulate(energy) / energy[0]
+    high, low = between
+    on_the_way = np.flatnonzero((share <= high) & (share >= low))
+    if share[-1] > low or len(on_the_way) < 2:
+        return None
+    fallen = -np.log(share[on_the_way])
+    if fallen[-1] <= fallen[0]:
+        return None
+    return float(np.trapezoid(values[on_the_way], fallen) / (fallen[-1] - fallen[0]))

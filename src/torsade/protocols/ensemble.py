@@ -53,7 +53,7 @@ def ensemble(
 
     >>> import torsade as ts
     >>> short = [ts.protocols.SnapTwist(twist=f"{t} deg", frames=1) for t in (0, 300)]
-    >>> [ts.protocols.SnapTwist.report(r)["fragments"] for r in ts.protocols.ensemble(short)]
+    >>> [result.report()["fragments"] for result in ts.protocols.ensemble(short)]
     [6, 2]
 
     Parameters

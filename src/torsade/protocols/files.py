@@ -8,12 +8,13 @@ force = "15 N"
 from __future__ import annotations
 
 import difflib
+import re
 import tomllib
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
-from torsade.errors import TorsadeError, quoted
+from torsade.errors import TorsadeError, named, quoted
 from torsade.protocols.base import Spec
 from torsade.protocols.battery import Battery
 from torsade.protocols.bend_twist import BendTwist
@@ -22,6 +23,7 @@ from torsade.protocols.prison_escape import PrisonEscape
 from torsade.protocols.reidemeister import Reidemeister
 from torsade.protocols.snap_quench import SnapQuench
 from torsade.protocols.snap_twist import SnapTwist
+from torsade.protocols.suture import Suture
 from torsade.protocols.tighten import Tighten
 
 __all__ = ["PROTOCOLS", "beside", "check_protocol", "load_spec", "merged", "read_fields", "read_toml"]
@@ -36,12 +38,17 @@ PROTOCOLS: MappingProxyType[str, type[Spec]] = MappingProxyType(
         "snap-quench": SnapQuench,
         "pendulum": Pendulum,
         "battery": Battery,
+        "suture": Suture,
     }
 )
 """The specification of every protocol, by name."""
 
-LARGEST = 2**16
-"""Largest specification read [bytes]: a key of very many parts takes a time that goes as their square."""
+LARGEST = 2**20
+"""Largest specification or sweep that is read [bytes]."""
+
+_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')"""
+_LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{32}}", re.A)
+"""A key of very many parts: reading one takes a time that goes as their square."""
 
 _REPLACES = MappingProxyType(
     {
@@ -72,7 +79,7 @@ def load_spec(path: str | Path) -> Spec:
 def read_fields(path: str | Path) -> dict[str, Any]:
     """The fields in a TOML file, `protocol` among them and known, the others as they are."""
     fields = read_toml(path)
-    check_protocol(fields.get("protocol"), repr(str(path)))
+    check_protocol(fields.get("protocol"), named(path))
     if "centerline" in fields:
         fields["centerline"] = beside(path, fields["centerline"])
     return fields
@@ -88,14 +95,17 @@ def read_toml(path: str | Path) -> dict[str, Any]:
     """
     from torsade.files.regular import Kind, opened
 
-    name = repr(str(path))
+    name = named(path)
     kind = Kind("fields", "reef.toml", "a specification", "leave out what is no field", "one field")
     with opened(Path(path), kind) as (file, _):
         content = file.read(LARGEST + 1)
     if len(content) > LARGEST:
         raise TorsadeError(f"{name} has more than {LARGEST} bytes; give a TOML specification")
     try:
-        return tomllib.loads(content.decode("utf-8-sig"))
+        text = content.decode("utf-8-sig")
+        if _LONG_KEY.search(text):
+            raise TorsadeError(f"{name} has a key of more than 32 parts; give a TOML specification")
+        return tomllib.loads(text)
     except RecursionError:
         raise TorsadeError(
             f"{name} has brackets too deep within each other; give a TOML specification"

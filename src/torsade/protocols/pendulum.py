@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from torsade.errors import TorsadeError
 from torsade.protocols.base import Positive, Trial
 from torsade.protocols.rods import Rod
-from torsade.units import Angle, Length, Mass, Time
+from torsade.units import Angle, Length, Mass, Time, Whole
 
 if TYPE_CHECKING:
     from torsade.arrays import Floats
@@ -51,8 +51,8 @@ class Pendulum(Rod):
     turn: Annotated[Angle, Field(gt=0, lt=100)] = Field(
         math.pi / 4, description="Angle that the cylinder is turned at first.", examples=["45 deg"]
     )
-    edges: int = Field(20, ge=4, le=2000, description="Number of edges that the rod is made of.")
-    frames: int = Field(
+    edges: Whole = Field(20, ge=4, le=2000, description="Number of edges that the rod is made of.")
+    frames: Whole = Field(
         400,
         ge=1,
         le=1_000_000,

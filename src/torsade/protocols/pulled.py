@@ -9,11 +9,11 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
-from torsade.errors import QuantityError, TorsadeError
+from torsade.errors import TorsadeError
 from torsade.protocols.base import Driven, Positive, Trial
-from torsade.units import Length, Number, Time, Viscosity
+from torsade.units import Length, Number, Time, Viscosity, Whole
 
 if TYPE_CHECKING:
     from torsade.arrays import Floats
@@ -62,8 +62,6 @@ COMMON = (
     "strain_stretch",
     "strain_bend",
     "strain_twist",
-    "velocity",
-    "self_torque",
 )
 """What every protocol that pulls records."""
 
@@ -158,7 +156,7 @@ class Pulled(Driven):
     drag: Literal["continuum", "node-pair"] | None = Field(
         None, description="Collision drag law, continuum or node-pair; by default the preset's."
     )
-    exclusion_edges: Annotated[int, Field(ge=1, le=1_000_000)] | None = Field(
+    exclusion_edges: Annotated[Whole, Field(ge=1, le=1_000_000)] | None = Field(
         None,
         description="No contact between edges at most so many apart along a fiber; by default the preset's.",
     )
@@ -168,13 +166,6 @@ class Pulled(Driven):
         "preset's.",
         examples=["3.14"],
     )
-
-    @field_validator("exclusion_edges", mode="before")
-    @classmethod
-    def _no_truth_value_either(cls, value: object) -> object:
-        if isinstance(value, bool):
-            raise QuantityError(f"is {value}; give a whole number")
-        return value
 
     @model_validator(mode="after")
     def _one_way_to_step(self) -> Pulled:
@@ -325,11 +316,19 @@ def _settle(motion: Motion, until: float) -> Outcome:
 
 def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, float | Floats]:
     """Everything recorded at the present time."""
+    now = motion.measure()
+    common = frame_of_fibers(motion, motion.assembly, motion.state, now, radius)
+    return common | experiment.measure(motion.state) | experiment.observe(motion.state, now)
+
+
+def frame_of_fibers(
+    motion: Motion, assembly: Assembly, state: State, now: Measured, radius: float
+) -> dict[str, float | Floats]:
+    """What every protocol that pulls records, named in `COMMON`; assembly and state are those of fibers."""
     from torsade import observables
 
-    assembly, state, now = motion.assembly, motion.state, motion.measure()
     strain = observables.surface_strain(assembly, state, radius)
-    common: dict[str, float | Floats] = {
+    return {
         "time": motion.time,
         "compression": now.compression,
         "twist": observables.twist(assembly, state),
@@ -347,4 +346,3 @@ def _frame(experiment: Experiment, motion: Motion, radius: float) -> dict[str, f
         "velocity": state.v,
         "self_torque": now.self_torque,
     }
-    return common | experiment.measure(state) | experiment.observe(state, now)

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from torsade.errors import TorsadeError
 from torsade.protocols.base import Positive
 from torsade.protocols.pulled import Experiment, Pulled
-from torsade.units import Length, Time
+from torsade.units import Length, Time, Whole
 
 if TYPE_CHECKING:
     from torsade.arrays import Floats
@@ -73,7 +73,7 @@ class Reidemeister(Pulled):
     duration: Annotated[Time, Positive] = Field(
         600.0, description="How long the whole move takes; four times as long for strands twice as long."
     )
-    frames: int = Field(
+    frames: Whole = Field(
         240,
         ge=1,
         le=1_000_000,

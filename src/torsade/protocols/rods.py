@@ -7,12 +7,12 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, model_validator
 
-from torsade.errors import QuantityError, TorsadeError
+from torsade.errors import TorsadeError
 from torsade.material import Material
 from torsade.protocols.base import Driven, Positive
-from torsade.units import Density, Length, Number, Pressure, Rate, Time
+from torsade.units import Density, Length, Number, Pressure, Rate, Time, Whole
 
 if TYPE_CHECKING:
     from torsade.arrays import Floats
@@ -48,19 +48,12 @@ class Rod(Driven):
     twist_damping: Annotated[Rate, Field(ge=0)] | None = Field(
         None, description="Damping b of twist; by default the material's.", examples=["1.68e4 1/s"]
     )
-    edges: int = Field(48, ge=4, le=2000, description="Number of edges that the rod is made of.")
+    edges: Whole = Field(48, ge=4, le=2000, description="Number of edges that the rod is made of.")
     step: Annotated[Time, Positive] | None = Field(
         None,
         description="Time step; by default 1 us, or half the longest stable one where that is less.",
         examples=["1 us"],
     )
-
-    @field_validator("edges", mode="before")
-    @classmethod
-    def _no_truth_value_either(cls, value: object) -> object:
-        if isinstance(value, bool):
-            raise QuantityError(f"is {value}; give a whole number")
-        return value
 
     @property
     def fiber_material(self) -> Material:
@@ -122,7 +115,7 @@ class Breakable(Rod):
     disorder: Annotated[Number, Field(ge=0, le=0.5)] = Field(
         0.0, description="Standard deviation of the strength along the rod, in sigma_c.", examples=["0.05"]
     )
-    seed: int = Field(0, ge=0, le=2**63 - 1, description="Which rod, where there is disorder.")
+    seed: Whole = Field(0, ge=0, le=2**63 - 1, description="Which rod, where there is disorder.")
     pieces: Literal["moving", "frozen"] = Field(
         "moving",
         description="What pieces do that no end holds: moving, they go on and may break again; or frozen.",

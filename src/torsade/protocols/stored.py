@@ -7,18 +7,18 @@ import json
 import os
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from torsade import places, provenance, store
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted
 from torsade.results import Result
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
 
-__all__ = ["check_ours", "goes_on", "is_there", "key", "opened", "sources", "whole"]
+__all__ = ["check_ours", "goes_on", "is_there", "key", "opened", "report", "sources", "whole"]
 
 NO_NUMBERS = ("view", "figures", "export", "sweep", "cli")
 """Parts of the package that no number depends on."""
@@ -113,6 +113,31 @@ def opened(path: Path) -> Result:
         reason = " ".join(str(error).split()).rstrip(".")[:120] or type(error).__name__
         raise TorsadeError(
             f"the run {str(path)!r} cannot be read ({reason}); remove it, or give --fresh to run it anew"
+        ) from None
+
+
+def report(result: Result) -> dict[str, Any]:
+    """The numbers that a run prints, of a result from anywhere; see `Result.report`."""
+    from torsade.protocols.files import PROTOCOLS
+
+    if result.protocol not in PROTOCOLS:
+        raise TorsadeError(
+            f"the result is of protocol {quoted(result.protocol)}, which this version does not have; read "
+            "its variables from result.dataset"
+        )
+    if not result.complete:
+        raise TorsadeError(
+            f"the run is {result.status}, and its numbers come at its end; go on with it (resume=True, "
+            "--resume)"
+        )
+    try:
+        return PROTOCOLS[result.protocol].report(result)
+    except (LookupError, TypeError, ValueError, AttributeError, OverflowError) as error:
+        if isinstance(error, TorsadeError):
+            raise
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise TorsadeError(
+            f"the numbers of the run cannot be read ({reason[:120]}); it is damaged, or of another version"
         ) from None
 
 

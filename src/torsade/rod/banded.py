@@ -7,6 +7,8 @@ and the signs of D count eigenvalues below -shift (Sylvester); what is solved is
 
 from __future__ import annotations
 
+import numpy as np
+
 from torsade._compile import compile_kernels
 from torsade.arrays import Floats
 
@@ -96,4 +98,83 @@ def multiply(band: Floats, x: Floats, y: Floats) -> None:
                 y[i - k, c] += band[i, k] * x[i, c]
 
 
-compile_kernels(__name__)
+def solve_bordered(
+    band: Floats,
+    shift: float,
+    factor: Floats,
+    border: tuple[Floats, Floats, Floats],
+    reduced: tuple[Floats, Floats],
+    r: Floats,
+    s: Floats,
+    refinements: int,
+) -> tuple[Floats, Floats, bool]:
+    """Solutions dq (n,), ds (k,) of [H + shift, U; V^T, D] with a factorised H, refined; whether there are.
+
+    border is U (n, k), V (n, k), D (k, k); reduced is (H + shift)^-1 U (n, k) and the Schur complement
+    D - V^T (H + shift)^-1 U (k, k).
+    """
+    right, left, corner = border
+    inner, schur = reduced
+    n, k = right.shape
+    x, ds = r.reshape(n, 1).copy(), s.copy()
+    regular = _solve_once(factor, left, inner, schur, x, ds)
+    rest, below, product = np.empty((n, 1)), np.empty(k), np.empty((n, 1))
+    for _ in range(refinements):
+        multiply(band, x, product)
+        below[:] = s
+        for i in range(n):
+            rest[i, 0] = r[i] - product[i, 0] - shift * x[i, 0]
+            for j in range(k):
+                rest[i, 0] -= right[i, j] * ds[j]
+                below[j] -= left[i, j] * x[i, 0]
+        for j in range(k):
+            for m in range(k):
+                below[j] -= corner[j, m] * ds[m]
+        _solve_once(factor, left, inner, schur, rest, below)
+        for i in range(n):
+            x[i, 0] += rest[i, 0]
+        for j in range(k):
+            ds[j] += below[j]
+    return x[:, 0].copy(), ds, regular
+
+
+def _solve_once(factor: Floats, left: Floats, inner: Floats, schur: Floats, x: Floats, ds: Floats) -> bool:
+    """Right-hand sides x (n, 1) and ds (k,) become solutions, in place; whether the complement is regular."""
+    solve(factor, x)
+    n, k = inner.shape
+    for j in range(k):
+        for i in range(n):
+            ds[j] -= left[i, j] * x[i, 0]
+    regular = _solve_dense(schur.copy(), ds)
+    for i in range(n):
+        for j in range(k):
+            x[i, 0] -= inner[i, j] * ds[j]
+    return regular
+
+
+def _solve_dense(matrix: Floats, x: Floats) -> bool:
+    """A right-hand side x (k,) becomes the solution, in place, by elimination with partial pivoting.
+
+    The matrix (k, k) is overwritten. Returns False, and x stays unsolved, when a pivot is nothing.
+    """
+    k = len(x)
+    for c in range(k):
+        top = c + np.abs(matrix[c:, c]).argmax()
+        if matrix[top, c] == 0.0:
+            return False
+        for m in range(k):
+            matrix[c, m], matrix[top, m] = matrix[top, m], matrix[c, m]
+        x[c], x[top] = x[top], x[c]
+        for row in range(c + 1, k):
+            share = matrix[row, c] / matrix[c, c]
+            for m in range(c + 1, k):
+                matrix[row, m] -= share * matrix[c, m]
+            x[row] -= share * x[c]
+    for c in range(k - 1, -1, -1):
+        for m in range(c + 1, k):
+            x[c] -= matrix[c, m] * x[m]
+        x[c] /= matrix[c, c]
+    return True
+
+
+compile_kernels(__name__, owning=("solve_bordered", "_solve_once", "_solve_dense"))

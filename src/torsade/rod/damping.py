@@ -18,6 +18,7 @@ from torsade.arrays import ONE, Bools, Floats, Index
 from torsade.assembly import Assembly
 from torsade.rod.contact import Contacts
 from torsade.rod.factor import HELD, Factor, assemble, eliminate, substitute
+from torsade.rod.skin import Skin, add_skin_diagonal, add_skin_drag, add_skin_entries, couple_skin
 
 
 class MobilityWork(NamedTuple):
@@ -187,6 +188,7 @@ def solve_mobility(
     eta_A: float,
     contacts: Contacts,
     factor: Factor | tuple[()],
+    skin: Skin | tuple[()],
     force: Floats,
     fixed: Bools,
     tolerance: float,
@@ -200,8 +202,9 @@ def solve_mobility(
     force, v (n_nodes, 3), fixed (n_nodes,) bool. False when there is no solution.
     """
     if len(factor) == 0:
-        return _conjugate_gradients(a, eta_A, contacts, force, fixed, tolerance, v, work)
+        return _conjugate_gradients(a, eta_A, contacts, skin, force, fixed, tolerance, v, work)
     assemble(a, eta_A, contacts, fixed, factor)
+    add_skin_entries(a, skin, factor)
     diagonal, prescribed = factor.diagonal, work.r
     for i in range(v.shape[0]):
         for c in range(3):
@@ -214,6 +217,7 @@ def solve_mobility(
     if not eliminate(factor, v):
         return False
     substitute(factor, v)
+    couple_skin(a, skin, factor, force, fixed, v)
     for i in range(v.shape[0]):
         if fixed[i]:
             for c in range(3):
@@ -225,6 +229,7 @@ def _conjugate_gradients(
     a: Assembly,
     eta_A: float,
     contacts: Contacts,
+    skin: Skin | tuple[()],
     force: Floats,
     fixed: Bools,
     tolerance: float,
@@ -239,8 +244,10 @@ def _conjugate_gradients(
     n = force.shape[0]
     r, z, p, q = work.r, work.z, work.p, work.q
     _tridiagonal_part(a, eta_A, contacts, work)
+    add_skin_diagonal(a, skin, work.diagonal, work.coupling)
     _factorise(a, fixed, work)
     apply_drag(a, eta_A, contacts, v, q)
+    add_skin_drag(a, skin, v, q)
     guess_power = abs(_dot(v, q))
     for i in range(n):
         for c in range(3):
@@ -254,6 +261,7 @@ def _conjugate_gradients(
         if rz <= tolerance * tolerance * max(abs(_dot(v, force)), guess_power) or rz < 1e-300:
             return True
         apply_drag(a, eta_A, contacts, p, q)
+        add_skin_drag(a, skin, p, q)
         for i in range(n):
             if fixed[i]:
                 for c in range(3):
@@ -314,6 +322,8 @@ def solve_spin(
     for f in range(edge_start.shape[0] - 1):
         first = edge_start[f]
         last = edge_start[f + 1]
+        if last == first:  # what has no edges does not spin
+            continue
         if last - first == hinge_start[f + 1] - hinge_start[f]:
             _solve_ring(first, last, diagonal, upper, work.factor, work.border, omega)
         else:
@@ -331,6 +341,8 @@ def _spin_matrix(
     edge_start, hinge_start, lbar = a.edge_start, a.hinge_start, a.hinge_length
     for f in range(edge_start.shape[0] - 1):
         first, n = edge_start[f], edge_start[f + 1] - edge_start[f]
+        if n == 0:
+            continue
         joints = hinge_start[f + 1] - hinge_start[f]
         after = hinge_start[f] + joints - n + 1
         for k in range(n - 1):

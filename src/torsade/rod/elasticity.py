@@ -161,6 +161,8 @@ def add_elastic_forces(
     for f in range(edge_start.shape[0] - 1):
         _edge_forces(a, f, EA, B, C, present, length, tangent, m, edge_force)
         node, edge, n = node_start[f], edge_start[f], edge_start[f + 1] - edge_start[f]
+        if n == 0:
+            continue
         for k in range(1, n):
             i, e = np.uintp(node + k), np.uintp(edge + k)
             for c in range(3):

@@ -292,8 +292,22 @@ def eliminate(factor: Factor, v: Floats) -> bool:
     return True
 
 
+def carry(factor: Factor, v: Floats) -> None:
+    """Eliminate another right side v (n_nodes, 3) with the factors that `eliminate` made."""
+    order, start, row, value = factor.order, factor.start, factor.row, factor.value
+    for k in range(order.shape[0]):
+        i = np.uintp(order[k])
+        v0, v1, v2 = v[i, 0], v[i, 1], v[i, 2]
+        for p in range(np.uintp(start[k]), np.uintp(start[k + 1])):
+            j = row[p]
+            l = value[p]
+            v[j, 0] -= l * v0
+            v[j, 1] -= l * v1
+            v[j, 2] -= l * v2
+
+
 def substitute(factor: Factor, v: Floats) -> None:
-    """Replace what `eliminate` left in v (n_nodes, 3) by the solution."""
+    """Replace what `eliminate` or `carry` left in v (n_nodes, 3) by the solution."""
     order, start, row, value, inverse = factor.order, factor.start, factor.row, factor.value, factor.inverse
     for k in range(order.shape[0] - 1, -1, -1):
         i = np.uintp(order[k])

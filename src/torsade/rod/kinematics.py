@@ -86,7 +86,7 @@ def reference_twist_change(a: Assembly, tangent_0: Floats, tangent: Floats, chan
             y, x = _swept(tangent_0, tangent, p, p + ONE)
             small = 2.0 * small_atan(y / x)
             change[np.uintp(hinge + k)] = small if abs(y) < 0.02 * x else math.nan
-        if hinge > hinge_start[f]:
+        if n > 0 and hinge > hinge_start[f]:
             change[hinge - 1] = math.nan
     for k in range(change.shape[0]):
         if change[k] != change[k]:
@@ -124,7 +124,8 @@ def carry_directors(edge_start: Ints, director: Floats, tangent_0: Floats, tange
     """
     for f in range(edge_start.shape[0] - 1):
         e = edge_start[f]
-        transport(director[e], tangent_0[e], tangent[e], director[e])
+        if e < edge_start[f + 1]:
+            transport(director[e], tangent_0[e], tangent[e], director[e])
 
 
 def spread_directors(hinges: Ints, tangent: Floats, reference_twist: Floats, director: Floats) -> None:

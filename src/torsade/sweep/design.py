@@ -19,7 +19,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from torsade.errors import TorsadeError, quoted
+from torsade.errors import TorsadeError, named, quoted
 from torsade.protocols import stored
 from torsade.protocols.files import beside, check_protocol, read_toml
 from torsade.protocols.sentences import dimension_of
@@ -229,7 +229,7 @@ class Sweep:
 
 def _read(path: str | Path) -> dict[str, Any]:
     """The tables in a TOML file, centerlines being looked for beside it."""
-    given, name = read_toml(path), repr(str(path))
+    given, name = read_toml(path), named(path)
     spec = check_protocol(given.get("protocol"), name)
     for word in given:
         if word not in TABLES:
@@ -241,8 +241,8 @@ def _read(path: str | Path) -> dict[str, Any]:
     for table in ("fixed", "grid", "zip"):
         fields = given.get(table)
         if isinstance(fields, dict) and "centerline" in fields:
-            named = fields["centerline"]
-            found = [beside(path, one) for one in named] if isinstance(named, list) else beside(path, named)
+            files = fields["centerline"]
+            found = [beside(path, one) for one in files] if isinstance(files, list) else beside(path, files)
             fields["centerline"] = found
     return given
 

@@ -97,6 +97,7 @@ def run(
     scheduler: str | None = None,
     executor: Executor | None = None,
     retry_failed: bool = False,
+    fresh: bool = False,
     at_most: int = MOST_POINTS,
     progress: Progress | None = None,
 ) -> Summary:
@@ -112,6 +113,7 @@ def run(
     scheduler : address of a dask scheduler, or slurm or pbs
     executor : where to run, in place of processes or of a scheduler: any of `concurrent.futures`
     retry_failed : run again what failed
+    fresh : run again what is there too; whole results that are kept stay
     at_most : refuse designs of more points
     progress : called with the share done and what is going on
 
@@ -134,7 +136,7 @@ def run(
         _clean(folder)
         status = _statuses(con, folder)
         _note(con, folder, sweep, points)
-        again = ("done",) if retry_failed else ("done", "failed")
+        again = () if fresh else ("done",) if retry_failed else ("done", "failed")
         keep = folder / RESULTS if sweep.keep == "results" else None
         there = [p for p in points if status.get(p.key) in again and _kept(keep, p.key, status[p.key])]
         known = {p.key for p in there}

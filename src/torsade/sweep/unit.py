@@ -144,9 +144,17 @@ def _versions() -> dict[str, str]:
 def flat(report: Mapping[str, Any], spec: Mapping[str, Any]) -> dict[str, Any]:
     """A report without nesting: tables within become NAME_KEY, lists of tables a list for each of their keys.
 
-    What repeats a field of the specification, and the computing time, are left out.
+    What repeats a field of the specification, and the computing time, are left out; what has the name of a
+    field and is something else becomes NAME_found, such as the twist that a battery comes to have.
     """
-    return {name: value for name, value in _entries("", report) if name not in spec and name != "wall_s"}
+    found: dict[str, Any] = {}
+    for name, value in _entries("", report):
+        if name not in spec:
+            found[name] = value
+        elif value != spec[name]:
+            found[f"{name}_found"] = value
+    found.pop("wall_s", None)
+    return found
 
 
 def _entries(prefix: str, table: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -19,7 +19,7 @@ and the diagram made of one does not say so. With `handed=False`, `identify` tak
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import product
@@ -51,6 +51,7 @@ __all__ = [
     "identify_open",
     "identify_pd",
     "identify_strands",
+    "name_open",
 ]
 
 
@@ -225,20 +226,35 @@ def identify_open(x: ArrayLike, directions: int = 100, seed: int = 0) -> OpenIde
     Raises:
         TorsadeError: no direction, or nodes that `project` refuses.
     """
+    counts = Counter(_closed_in_turn(x, directions, seed))
+    return OpenIdentity({name: n / directions for name, n in counts.most_common()}, directions)
+
+
+def name_open(x: ArrayLike, directions: int = 100, seed: int = 0) -> str:
+    """The name that `identify_open` finds, sooner: directions that cannot change it any more are left out."""
+    counts: Counter[str] = Counter()
+    for k, name in enumerate(_closed_in_turn(x, directions, seed), start=1):
+        counts[name] += 1
+        (first, most), *others = counts.most_common(2)
+        if most - sum(n for _, n in others) > directions - k:
+            break
+    return first
+
+
+def _closed_in_turn(x: ArrayLike, directions: int, seed: int) -> Iterator[str]:
+    """What nodes (n, 3) of an open curve are, closed in one direction after another."""
     if directions < 1:
         raise TorsadeError(f"{directions} directions are asked for; give at least one")
     nodes = np.asarray(x, dtype=np.float64)
     project([nodes])  # refuses what is no curve
     size = 10.0 * float(np.ptp(nodes, axis=0).max())
-    counts: Counter[str] = Counter()
     turn = Rotation.random(rng=np.random.default_rng(seed)).as_matrix()
     for u in spiral(directions) @ turn:
         closed = thinned(np.concatenate([nodes, nodes[-1:] + size * u, nodes[:1] + size * u]))
         if len(closed) == 3:
-            counts[UNKNOT] += 1
+            yield UNKNOT
         else:
-            counts[str(identify(project([closed], True, direction=_beside(u)).diagram, patience=20))] += 1
-    return OpenIdentity({name: n / directions for name, n in counts.most_common()}, directions)
+            yield str(identify(project([closed], True, direction=_beside(u)).diagram, patience=20))
 
 
 def _beside(u: NDArray[np.float64]) -> NDArray[np.float64]:

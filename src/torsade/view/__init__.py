@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from torsade.view.battery import draw_battery, plot_battery
     from torsade.view.cascade import along_rod, draw_pieces, pieces_at, plot_cascade
     from torsade.view.film import movie
-    from torsade.view.plots import plot_move, plot_separation, plot_swing, plot_tightening
+    from torsade.view.plots import plot_move, plot_separation, plot_swing, plot_tightening, plot_wound
     from torsade.view.scene import render, render_result
     from torsade.view.strands import strands_at
     from torsade.view.window import show
@@ -31,6 +31,7 @@ __all__ = [
     "plot_separation",
     "plot_swing",
     "plot_tightening",
+    "plot_wound",
     "render",
     "render_result",
     "show",
@@ -49,6 +50,7 @@ _HOMES = {
     "plot_separation": "torsade.view.plots",
     "plot_swing": "torsade.view.plots",
     "plot_tightening": "torsade.view.plots",
+    "plot_wound": "torsade.view.plots",
     "render": "torsade.view.scene",
     "render_result": "torsade.view.scene",
     "show": "torsade.view.window",

@@ -3,23 +3,36 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from torsade.errors import TorsadeError
+from torsade.topology.names import UNKNOT
 from torsade.view._extra import require
+from torsade.view.overlay import Bar
 from torsade.view.plots import ENERGIES, INK, STYLE, save
 from torsade.view.scene import picture
 
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["density_bar", "density_colour", "draw_battery", "plot_battery"]
+__all__ = [
+    "Shape",
+    "bar_of_density",
+    "battery_note",
+    "density_bar",
+    "density_colour",
+    "draw_battery",
+    "name_knots",
+    "plot_battery",
+    "shapes",
+    "top_density",
+]
 
 Floats = NDArray[np.float64]
 
@@ -43,16 +56,28 @@ def density_colour(values: Floats) -> Floats:
     return np.asarray(colours)[..., :3]
 
 
-def density_bar(figure: Any, axes: Any, top: float, **options: Any) -> None:
-    """The colour bar of energy densities up to top [E_b h²]."""
-    colors = require("matplotlib.colors")
+def _density_colormap() -> Any:
     base = require("matplotlib").colormaps[PALETTE](np.linspace(0.0, DARKEST, 256))
+    return require("matplotlib.colors").ListedColormap(base, "density")
+
+
+def bar_of_density(dataset: xarray.Dataset) -> Bar:
+    """What a colour bar on a picture explains."""
+    top = top_density(dataset) / _unit(dataset)
+    ticks = require("matplotlib.ticker").MaxNLocator(4).tick_values(0.0, top)
+    shown = tuple(float(tick) for tick in ticks if tick <= top)
+    return Bar(_density_colormap, top, shown, r"energy per length  ($E_b h^2$)")
+
+
+def density_bar(figure: Any, axes: Any, top: float, **options: Any) -> Any:
+    """The colour bar of energy densities up to top [E_b h²], which is drawn and returned."""
     scale = require("matplotlib.cm").ScalarMappable(
-        colors.Normalize(0.0, top), colors.ListedColormap(base, "density")
+        require("matplotlib.colors").Normalize(0.0, top), _density_colormap()
     )
     bar = figure.colorbar(scale, ax=axes, **options)
     bar.set_label(r"energy per length ($E_b h^2$)")
     bar.outline.set_visible(False)
+    return bar
 
 
 def draw_battery(dataset: xarray.Dataset, path: str | Path) -> Path:
@@ -64,49 +89,105 @@ def draw_battery(dataset: xarray.Dataset, path: str | Path) -> Path:
     path : the file to write; its ending chooses the format (png, pdf, svg)
     """
     _require(dataset)
-    unit = dataset.attrs["E0_J"] / _length(dataset)
-    shapes = list(_shapes(dataset))
-    top = float(np.quantile(shapes[0][1], TOP))
+    found = list(shapes(dataset))
+    top = float(np.quantile(found[0].density, TOP))
     with require("matplotlib").rc_context(STYLE):
-        size = (1.75 * len(shapes) + 0.7, 2.2)
+        size = (1.75 * len(found) + 0.7, 2.2)
         figure = require("matplotlib.figure").Figure(figsize=size, layout="constrained")
-        axes = figure.subplots(1, len(shapes), squeeze=False)[0]
-        for axis, (x, density, closed, title) in zip(axes, shapes, strict=True):
-            image = picture(
-                [x],
-                closed,
-                float(dataset.attrs["radius"]),
-                values=[density / top],
-                size=PANEL,
-                palette=density_colour,
-                bar=False,
-                fill=0.86,
-                whole=True,
-            )
-            axis.imshow(image, interpolation="antialiased")
-            axis.axis("off")
-            axis.set_title(title, loc="center", fontsize=7.5)
-        density_bar(figure, list(axes), top / unit, shrink=0.75, pad=0.01)
+        axes = figure.subplots(1, len(found), squeeze=False)[0]
+        for axis, shape in zip(axes, found, strict=True):
+            left = "charged" if shape.closed else f"t = {shape.time:.2g} $T_0$: {100 * shape.left:.2g} %"
+            shape.draw(axis, float(dataset.attrs["radius"]), top, f"{shape.called}, {left}")
+        density_bar(figure, list(axes), top, shrink=0.75, pad=0.01)
         return save(figure, path)
 
 
-def _shapes(dataset: xarray.Dataset) -> Iterator[tuple[Floats, Floats, bool, str]]:
-    """Nodes, energy density, whether closed, and what to say of every shape that is shown."""
-    charged, names = dataset.isel(charge=-1), ("position", "energy_density")
-    x, density = (np.asarray(charged[f"charge_{name}"], np.float64) for name in names)
-    yield x, density, True, f"{dataset.attrs['knot']}, charged"
-    parts = [np.asarray(dataset[f"energy_{kind}"], np.float64) for kind in ENERGIES]
-    energy = np.sum(parts, axis=0)
-    times = np.asarray(dataset["time"], np.float64) / dataset.attrs["T0_s"]
-    for share in SHARES:
+class Shape(NamedTuple):
+    """A battery at one moment.
+
+    Attributes
+    ----------
+    x : nodes [m], shape (n, 3)
+    density : energy per rest length [E_b h²], shape (n,)
+    closed : whether it is not cut yet
+    knot : that it is then
+    time : since the cut, or before it since it was twisted [T_0]
+    left : of the energy at the cut, as a share of it
+    """
+
+    x: Floats
+    density: Floats
+    closed: bool
+    knot: str
+    time: float
+    left: float
+
+    @property
+    def called(self) -> str:
+        """The knot in words."""
+        return called(self.knot)
+
+    def draw(self, axes: Any, radius: float, top: float, title: str, size: tuple[int, int] = PANEL) -> None:
+        """Its picture on axes that lose their frame; top is the density of the darkest colour."""
+        image = picture(
+            [self.x], self.closed, radius, values=[self.density / top], size=size, palette=density_colour,
+            bar=False, fill=0.86, whole=True,
+        )  # fmt: skip
+        axes.imshow(image, interpolation="antialiased")
+        axes.axis("off")
+        axes.set_title(title, loc="center", fontsize=7.5)
+
+    @classmethod
+    def charging(cls, dataset: xarray.Dataset, frame: int = -1) -> Shape:
+        """At a frame before the cut."""
+        then = dataset.isel(charge=frame)
+        x, density = (np.asarray(then[f"charge_{n}"], np.float64) for n in ("position", "energy_density"))
+        time = float(then["charge_time"]) / dataset.attrs["T0_s"]
+        return cls(x, density / _unit(dataset), True, dataset.attrs["charge_knots"][frame], time, 1.0)
+
+    @classmethod
+    def discharging(cls, dataset: xarray.Dataset, frame: int) -> Shape:
+        """At a frame after the cut."""
+        then, energy = dataset.isel(time=frame), _energy(dataset)
+        x, density = (np.asarray(then[name], np.float64) for name in ("position", "energy_density"))
+        time = float(then["time"]) / dataset.attrs["T0_s"]
+        knot = dataset.attrs["frame_knots"][frame]
+        return cls(x, density / _unit(dataset), False, knot, time, float(energy[frame] / energy[0]))
+
+
+def shapes(dataset: xarray.Dataset, shares: Sequence[float] = SHARES) -> Iterator[Shape]:
+    """The charged fiber, and the fiber as soon as it has no more than each share of its energy left."""
+    yield Shape.charging(dataset)
+    energy = _energy(dataset)
+    for share in shares:
         reached = np.flatnonzero(energy <= share * energy[0])
         if len(reached):
-            k = int(reached[0])
-            frame = dataset.isel(time=k)
-            x, density = (np.asarray(frame[name], np.float64) for name in names)
-            left = f"{100 * energy[k] / energy[0]:.2g} %"
-            name = dataset.attrs["frame_knots"][k]
-            yield x, density, False, f"{name}, t = {times[k]:.2g} $T_0$: {left}"
+            yield Shape.discharging(dataset, int(reached[0]))
+
+
+def top_density(dataset: xarray.Dataset) -> float:
+    """Energy per rest length [J/m] that the darkest colour stands for."""
+    return float(np.quantile(np.asarray(dataset["charge_energy_density"][-1], np.float64), TOP))
+
+
+def battery_note(dataset: xarray.Dataset, time: float) -> str:
+    """Which knot a battery is at a time [s] after the cut, and how much of its energy is left."""
+    times, energy = np.asarray(dataset["time"], np.float64), _energy(dataset)
+    frame = max(0, int(np.searchsorted(times, time, side="right")) - 1)
+    left = 100 * float(np.exp(np.interp(time, times, np.log(energy / energy[0]))))
+    knot = dataset.attrs["frame_knots"][frame]
+    shown = f"{left:.0f}" if left >= 10 else f"{left:.1f}"
+    return f"{called(knot)}, {shown} % of the energy left"
+
+
+def called(knot: str) -> str:
+    """A knot by its name, and of none that it is untied."""
+    return "untied" if knot == UNKNOT else knot
+
+
+def _energy(dataset: xarray.Dataset) -> Floats:
+    """All energy at every frame after the cut [J]."""
+    return np.asarray(sum(np.asarray(dataset[f"energy_{kind}"], np.float64) for kind in ENERGIES))
 
 
 def plot_battery(dataset: xarray.Dataset, path: str | Path) -> Path:
@@ -149,29 +230,29 @@ def plot_battery(dataset: xarray.Dataset, path: str | Path) -> Path:
             axes[1].set_ylabel("crossings")
             axes[1].set_ylim(-0.4, float(crossings.max()) + 1.6)
             axes[1].yaxis.get_major_locator().set_params(integer=True)
-            _name_knots(axes[1], t, dataset.attrs["frame_knots"])
+            name_knots(axes[1:], t, dataset.attrs["frame_knots"])
         axes[0].set_title(f"{dataset.attrs['knot']}", fontsize=8.5)
         figure.align_ylabels(list(axes))
         return save(figure, path)
 
 
-def _name_knots(axis: Any, t: Floats, names: list[str]) -> None:
-    """Write the knots above the crossings, each where it begins, and a line between two."""
+def name_knots(axes: Sequence[Any], t: Floats, names: Sequence[str]) -> None:
+    """Lines where the knot becomes another, and above the last of the axes its name where there is room."""
     begins = [k for k, name in enumerate(names) if k == 0 or name != names[k - 1]]
     for k, after in pairwise([*begins, len(t) - 1]):
-        if k:
+        for axis in axes if k else ():
             axis.axvline(t[k], color=INK, linewidth=0.5, linestyle=(0, (2, 2)))
         low = t[1] * 0.2 if k == 0 else t[k]
         if t[after] > 1.8 * low:  # room enough for a name
-            axis.annotate(
-                names[k], (low, 0.97), xycoords=("data", "axes fraction"), xytext=(3, 0),
+            axes[-1].annotate(
+                called(names[k]), (low, 0.97), xycoords=("data", "axes fraction"), xytext=(3, 0),
                 textcoords="offset points", fontsize=6.5, color=INK, va="top",
             )  # fmt: skip
 
 
-def _length(dataset: xarray.Dataset) -> float:
-    """L [m], from the numbers of the model."""
-    return float(json.loads(dataset.attrs["model"])["fiber_length"])
+def _unit(dataset: xarray.Dataset) -> float:
+    """E_b h² [N]: E_0 over the length of the fiber, which is among the numbers of the model."""
+    return float(dataset.attrs["E0_J"]) / float(json.loads(dataset.attrs["model"])["fiber_length"])
 
 
 def _require(dataset: xarray.Dataset) -> None:

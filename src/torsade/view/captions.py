@@ -14,7 +14,7 @@ from torsade.view.camera import View
 from torsade.view.overlay import INK, Bar, draw_bar, drawn
 from torsade.view.plots import SLIP
 
-__all__ = ["Captions", "Clock", "Ring", "nice_length"]
+__all__ = ["EVER_FASTER", "Captions", "Clock", "Ring", "nice_length", "pace"]
 
 Floats = NDArray[np.float64]
 Pixels = NDArray[np.uint8]
@@ -22,6 +22,9 @@ Pixels = NDArray[np.uint8]
 MUTED = "#737a81"
 EDGE = 0.045
 """Distance of what is written from the border, in widths of the frame."""
+
+EVER_FASTER = "time runs ever faster"
+"""Of movies in the logarithm of time."""
 
 SCALES = ((1e-6, "µm"), (1e-3, "mm"), (1e-2, "cm"), (1.0, "m"))
 
@@ -44,6 +47,12 @@ class Clock(NamedTuple):
         unit, name = (1e-6, "µs") if duration < 0.01 else (1e-3, "ms") if duration < 0.5 else (1.0, "s")
         decimals = max(0, math.ceil(-math.log10(duration / unit / 100.0) - 1e-9))
         clock = cls(unit, decimals, name, 0)
+        return clock._replace(digits=max(len(clock.number(time)) for time in (first, last)))
+
+    @classmethod
+    def in_units(cls, unit: float, name: str, first: float, last: float) -> Clock:
+        """In a unit [s] of that name, to a thousandth of it, from first to last [s]."""
+        clock = cls(unit, 3, name, 0)
         return clock._replace(digits=max(len(clock.number(time)) for time in (first, last)))
 
     def number(self, time: float) -> str:
@@ -83,14 +92,14 @@ class Captions:
     view : the camera
     unit : what the unit of the view is [m]
     clock : how times are written
-    slowed : how many times longer the movie takes than what it shows
+    how : what to say of how time runs
     bar : the colour bar, if there is one
     """
 
-    def __init__(self, view: View, unit: float, clock: Clock, slowed: float, bar: Bar | None) -> None:
+    def __init__(self, view: View, unit: float, clock: Clock, how: str, bar: Bar | None) -> None:
         self._view, self._clock = view, clock
         self._still = _Layer(
-            drawn(view.size, lambda figure, axes: self._lasting(figure, axes, unit, slowed, bar))
+            drawn(view.size, lambda figure, axes: self._lasting(figure, axes, unit, how, bar))
         )
 
     def on(self, picture: Pixels, time: float, note: str = "", rings: Sequence[Ring] = ()) -> Pixels:
@@ -98,8 +107,8 @@ class Captions:
         layer = _Layer(drawn(self._view.size, lambda _, axes: self._passing(axes, time, note, rings)))
         return layer.over(self._still.over(picture))
 
-    def _lasting(self, figure: Any, axes: Any, unit: float, slowed: float, bar: Bar | None) -> None:
-        """A length scale below on the right, a colour bar on the left, and how slow the movie is."""
+    def _lasting(self, figure: Any, axes: Any, unit: float, how: str, bar: Bar | None) -> None:
+        """A length scale below on the right, a colour bar on the left, and how time runs."""
         (width, height), u = self._view.size, self._view.size[1] / 100.0
         edge, foot = EDGE * width, (EDGE + 0.04) * height
         per_metre = float(self._view.scale(self._view.focus[None])[0]) / unit
@@ -111,7 +120,7 @@ class Captions:
             0.5 * (left + right), foot + 1.2 * u, f"{length / scale:g} {name}", color=INK, fontsize=1.9 * u,
             ha="center", va="bottom",
         )  # fmt: skip
-        axes.text(right, height - edge, pace(slowed), color=MUTED, fontsize=1.75 * u, ha="right", va="top")
+        axes.text(right, height - edge, how, color=MUTED, fontsize=1.75 * u, ha="right", va="top")
         if bar is not None:
             draw_bar(figure, (EDGE, EDGE + 0.04), u, bar)
 

@@ -10,16 +10,19 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from torsade.errors import TorsadeError, counted
+from torsade.curve import perpendicular
+from torsade.errors import TorsadeError
 from torsade.stopping import Patience
-from torsade.view.camera import SAMPLE, View, best_side, frame, knot_body
-from torsade.view.captions import Captions, Clock, Ring
+from torsade.view.battery import bar_of_density, density_colour
+from torsade.view.camera import SAMPLE, View, best_side, frame, knot_body, level_right
+from torsade.view.captions import EVER_FASTER, Captions, Clock, Ring, pace
 from torsade.view.cascade import THICKER
 from torsade.view.colours import strain_colour, strand_colour, stress_colour
 from torsade.view.encode import ENDINGS, encoder
-from torsade.view.moments import Moment, Moments
+from torsade.view.moments import Moment, Moments, colours_of
 from torsade.view.overlay import STRAIN, STRESS
 from torsade.view.scene import lit_by_lamp, shadow_pieces
+from torsade.view.skin import FROM_ABOVE, Skin, skin_colour, skin_over_time
 from torsade.view.stage import Stage
 from torsade.view.tube import SmoothCurve, divisions, smooth_centerline, tube
 
@@ -32,8 +35,11 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Pixels = NDArray[np.uint8]
 
-COLOURS = ("strain", "stress", "strands")
-"""What colours can say: strain of fibers, stress over strength of rods that break, which strand or piece."""
+COLOURS = ("strain", "stress", "energy", "strands")
+"""What colours can say: strain of fibers, stress over strength of rods that break, energy per length of
+batteries, which strand or piece."""
+
+PALETTES = {"strain": strain_colour, "stress": stress_colour, "energy": density_colour}
 
 SIZE, FPS, SECONDS = (1280, 720), 30.0, 8.0
 
@@ -70,8 +76,8 @@ def movie(
 ) -> Path:
     """Write a movie of a result that goes on in time, such as a knot being pulled or a rod that breaks.
 
-    Time runs evenly; between stored frames nodes move straight. The camera stays where it is. Rods that break
-    are drawn three times as thick as they are, as in their pictures.
+    Time runs evenly, of batteries ever faster; between stored frames nodes move straight. The camera stays
+    where it is. Rods that break are drawn three times as thick as they are, as in their pictures.
 
     Parameters
     ----------
@@ -82,8 +88,8 @@ def movie(
     size : width and height [pixels], rounded to multiples of 16
     frames : first and last stored frame to show, from 0, or from the last one if negative; without it all, or
         of a rod that breaks those from just before its first break on
-    colour : `strain`, `stress` over strength, or `strands`, one colour for each strand or piece; by default
-        strain, and stress of rods that break
+    colour : `strain`, `stress` over strength, `energy` per length, or `strands`, one colour for each strand
+        or piece; by default strain, stress of rods that break, energy of batteries
     whole : hold all of every fiber in view, not the knot alone
     progress : called with the share done and what is going on
 
@@ -97,34 +103,42 @@ def movie(
         When there is nothing that moves, an option makes no sense, or the file cannot be written.
     """
     path, tell = Path(path), progress or (lambda share, note: None)
-    moments = Moments(dataset, frames)
     pictures = _pictures(path, seconds, fps)
-    colour = _colour(dataset, moments, colour)
+    Moments(dataset, frames)  # refuses what cannot be shown
+    colour = _colour(dataset, colour)
+    moments = Moments(dataset, frames, None if colour == "strands" else colour)
     shots = list(_shots(moments, pictures))
-    shooting = _Shooting(moments, sides(size), colour, whole, _held(dataset))
-    begin, end = float(moments.times[0]), float(moments.times[-1])
-    shares = LEAD * moments.broken_at_first + TAIL
-    captions = Captions(
-        shooting.view,
-        shooting.unit,
-        Clock.over(begin - moments.origin, end - moments.origin),
-        seconds * (1.0 - shares) / (end - begin),
-        {"strain": STRAIN, "stress": STRESS}.get(colour),
-    )
+    skin = skin_over_time(dataset)
+    shooting = _Shooting(moments, sides(size), colour, whole, _held(dataset), skin)
+    captions = _captions(dataset, moments, shooting, colour, seconds)
     # A signal that comes while others draw would be lost in what they call back.
     with (
         Patience(lambda: None) as patience,
         encoder(path, shooting.view.size, fps) as add,
-        Stage(shooting.view, samples=8) as stage,
+        Stage(shooting.view, samples=8, glass=0 if skin is None else 2) as stage,
     ):
         for k, shot in enumerate(shots):
             tell(k / pictures, f"picture {k + 1} of {pictures}")
             moment = moments.before_the_break() if shot.before else moments.at(shot.time)
             picture = shooting.picture(stage, moment)
-            note = counted(len(moment.strands), "piece") if moments.breaking else ""
+            note = moments.note(shot.time)
             add(captions.on(picture, shot.time - moments.origin, note, shooting.rings(moment, shot)))
             patience.end()
     return path
+
+
+def _captions(
+    dataset: xarray.Dataset, moments: Moments, shooting: _Shooting, colour: str, seconds: float
+) -> Captions:
+    """What is written on the pictures."""
+    begin, end = (float(moments.times[k]) - moments.origin for k in (0, -1))
+    if moments.battery:
+        clock, how = Clock.in_units(float(dataset.attrs["T0_s"]), "$T_0$", begin, end), EVER_FASTER
+    else:
+        shares = LEAD * moments.broken_at_first + TAIL
+        clock, how = Clock.over(begin, end), pace(seconds * (1.0 - shares) / (end - begin))
+    bar = bar_of_density(dataset) if colour == "energy" else {"strain": STRAIN, "stress": STRESS}.get(colour)
+    return Captions(shooting.view, shooting.unit, clock, how, bar)
 
 
 def sides(size: tuple[int, int]) -> tuple[int, int]:
@@ -156,15 +170,14 @@ class _Shot(NamedTuple):
 
 
 def _shots(moments: Moments, pictures: int) -> Iterator[_Shot]:
-    """What every picture of the movie shows: a rod before it breaks, motion at an even pace, the end."""
+    """What every picture of the movie shows: a rod before it breaks, motion, the end."""
     lead = LEAD if moments.broken_at_first else 0.0
-    begin, end = float(moments.times[0]), float(moments.times[-1])
     moving = 1.0 - lead - TAIL
-    when = [lead + moving * (b.time - begin) / (end - begin) for b in moments.breaks]
+    when = [lead + moving * moments.share(b.time) for b in moments.breaks]
     for k in range(pictures):
         at = k / max(pictures - 1, 1)
         share = min(max((at - lead) / moving, 0.0), 1.0)
-        yield _Shot(begin + share * (end - begin), at < lead, [at - w for w in when if w <= at])
+        yield _Shot(moments.when(share), at < lead, [at - w for w in when if w <= at])
 
 
 class _Shooting:
@@ -174,18 +187,30 @@ class _Shooting:
     """
 
     def __init__(
-        self, moments: Moments, size: tuple[int, int], colour: str, whole: bool, held: float
+        self,
+        moments: Moments,
+        size: tuple[int, int],
+        colour: str,
+        whole: bool,
+        held: float,
+        skin: Callable[[float], Skin] | None = None,
     ) -> None:
         self._colour, self._closed, self._breaks = colour, moments.closed, moments.breaks
         self.unit = moments.radius * (THICKER if moments.breaking else 1.0)
         self._origin = np.concatenate(moments.at(moments.times[0]).strands).mean(axis=0)
         self._parts: dict[tuple[int, ...], list[Ints]] = {}
+        self._skin = skin
         looked = [(moment.time, self._nodes(moment)) for moment in moments.spread()]
-        if moments.flat or whole:
+        if moments.flat or moments.battery or whole:
             body = np.concatenate([x for _, strands in looked for x in strands])
         else:
             body = self._knots(looked[:: max(1, len(looked) // LOOKED_AT)], held)
-        right, toward = (ALONG, ACROSS) if moments.flat else self._side(self._nodes(moments.at(held)))
+        if moments.flat:
+            right, toward = ALONG, ACROSS
+        elif moments.battery:
+            right, toward = self._side_along(looked[0][1], looked[-1][1][0])
+        else:
+            right, toward = self._side(self._nodes(moments.at(held)))
         self.view = _framed(body, size, right, toward)
 
     def _curves(self, nodes: Sequence[Floats]) -> list[SmoothCurve]:
@@ -203,9 +228,21 @@ class _Shooting:
 
     def _side(self, nodes: Sequence[Floats]) -> tuple[Floats, Floats]:
         """Directions right and toward the camera from which a knot is plainest."""
+        if self._skin is not None:
+            return level_right(FROM_ABOVE), FROM_ABOVE
         curves = self._curves(nodes)
         body = np.concatenate(knot_body(curves, self._closed, 1.0))
         return best_side([c.x for c in curves], body, 1.0, level=not all(self._closed))
+
+    def _side_along(self, nodes: Sequence[Floats], last: Floats) -> tuple[Floats, Floats]:
+        """Where the last shape of a strand lies level, and of such sides the one that shows a knot best."""
+        right = last[-1] - last[0]
+        right /= np.linalg.norm(right)
+        up = perpendicular(right)
+        axes = np.stack([right, up, np.cross(right, up)])
+        curves = [c.x @ axes.T for c in self._curves(nodes)]
+        level, toward = best_side(curves, np.concatenate(curves), 1.0, level=True)
+        return level @ axes, toward @ axes
 
     def _nodes(self, moment: Moment) -> list[Floats]:
         return [(x - self._origin) / self.unit for x in moment.strands]
@@ -224,8 +261,11 @@ class _Shooting:
         if self._colour == "strands":
             colours = [np.tile(strand_colour(s), (len(m.vertices), 1)) for s, m in enumerate(meshes)]
         else:
-            palette = strain_colour if self._colour == "strain" else stress_colour
+            palette = PALETTES[self._colour]
             colours = [palette(m.at_vertices(v)) for m, v in zip(meshes, moment.values, strict=True)]
+        if self._skin is not None:
+            bodies = self._skin(moment.time).meshes(self._origin, self.unit)
+            meshes, colours = meshes + bodies, colours + [skin_colour(m) for m in bodies]
         pieces = shadow_pieces(self._curves(nodes), loops)
         return stage.shown(meshes, lit_by_lamp(meshes, colours, pieces, self.view))
 
@@ -235,8 +275,8 @@ class _Shooting:
         last = np.cumsum([len(x) - 1 for x in nodes]).tolist()
         rings = []
         for b, age in zip(self._breaks, shot.ages, strict=False):
-            if age < FLASH and b.node in last[:-1]:
-                p = last.index(b.node)
+            if age < FLASH and b.node in (0, *last[:-1]):
+                p = last.index(b.node) if b.node else -1  # the ends of a strand that was closed
                 middle = 0.5 * (nodes[p][-1] + nodes[p + 1][0])
                 rings.append(Ring(self.view.pixels(middle[None])[0], age / FLASH))
         return rings
@@ -272,13 +312,14 @@ def _pictures(path: Path, seconds: float, fps: float) -> int:
     return max(2, round(seconds * fps))
 
 
-def _colour(dataset: xarray.Dataset, moments: Moments, colour: str | None) -> str:
-    own = "stress" if moments.breaking else "strain"
+def _colour(dataset: xarray.Dataset, colour: str | None) -> str:
+    known = colours_of(dataset)
     if colour is None:
-        return own if own == "stress" or "log_strain" in dataset else "strands"
-    if colour not in (own, "strands"):
+        return (*known, "strands")[0]
+    if colour not in (*known, "strands"):
+        can = " or ".join(repr(name) for name in (*known, "strands"))
         raise TorsadeError(
-            f"the colour is to show {colour!r}; of this result it can be {own!r} or 'strands', one colour "
-            f"for each {'piece' if moments.breaking else 'strand'}"
+            f"the colour is to show {colour!r}; of this result it can be {can}, one colour for each "
+            f"{'piece' if 'piece_start' in dataset else 'strand'}"
         )
     return colour

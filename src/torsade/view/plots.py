@@ -102,6 +102,41 @@ def plot_tightening(dataset: xarray.Dataset, path: str | Path) -> Path:
         return save(figure, path)
 
 
+def plot_wound(dataset: xarray.Dataset, path: str | Path) -> Path:
+    """Plot the gap of a sutured wound, what its sides move along z, and the forces on them, against time.
+
+    Parameters
+    ----------
+    dataset : of the protocol suture
+    path : the file to write; its ending chooses the format (png, pdf, svg)
+    """
+    _require(dataset, "gap", "skin_position", "skin_pressing", "skin_shearing")
+    z = 1e6 * np.asarray(dataset["skin_position"][:, :, 2] - dataset["skin_position"][0, :, 2])
+    force = 1e3 * np.stack([np.asarray(dataset[f"skin_{kind}"])[:, 0] for kind in ("pressing", "shearing")])
+    panels = [
+        ("gap (mm)", 1e3 * _values(dataset, "gap")),
+        ("$z$ (\u00b5m)", z[:, 0]),
+        ("force on $a$ (mN)", force[0]),
+    ]
+    with require("matplotlib").rc_context(STYLE):
+        figure, axes = _stack(dataset, panels)
+        axes[1].plot(np.asarray(dataset["time"]), z[:, 1], color=SLIP)
+        axes[2].plot(np.asarray(dataset["time"]), force[1], color=SLIP)
+        _beside(axes[1], "side a", "side b")
+        _beside(axes[2], "normal", "shear")
+        _title(axes[0], dataset)
+        return save(figure, path)
+
+
+def _beside(axis: Any, first: str, second: str) -> None:
+    """Say what the two curves of a panel are, above its right corner."""
+    for text, colour, x in ((first, CURVE, 0.86), (second, SLIP, 1.0)):
+        axis.annotate(
+            text, (x, 1.0), xycoords="axes fraction", xytext=(0, 2), textcoords="offset points",
+            ha="right", va="bottom", fontsize=7.0, color=colour,
+        )  # fmt: skip
+
+
 def plot_swing(dataset: xarray.Dataset, path: str | Path) -> Path:
     """Plot the angle and the energy of a torsion pendulum against time.
 

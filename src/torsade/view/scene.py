@@ -23,6 +23,7 @@ from torsade.view.camera import (
 from torsade.view.colours import strain_colour, strand_colour
 from torsade.view.overlay import Mark, draw_over
 from torsade.view.shading import LAMP, Pieces, lit, occlusion
+from torsade.view.skin import FROM_ABOVE, Skin, skin_at, skin_colour
 from torsade.view.stage import Stage, averaged
 from torsade.view.strands import strands_at
 from torsade.view.tube import Mesh, SmoothCurve, smooth_centerline, tube
@@ -53,6 +54,7 @@ def render(
     arrows: Sequence[Arrow] = (),
     palette: Callable[[Floats], Floats] = strain_colour,
     bar: bool = True,
+    skin: Skin | None = None,
 ) -> Path:
     """Write a picture (PNG) of strands, framed tightly on the knot that they form.
 
@@ -74,13 +76,14 @@ def render(
     arrows : on strands, where they are in sight
     palette : colour (..., 3) of values (...,); by default the measured one of strain
     bar : whether strain colours are explained by a colour bar
+    skin : cylinders that the strands lie around
 
     Returns
     -------
     The path of the file.
     """
     options: dict[str, Any] = {"values": values, "size": size, "direction": direction, "fill": fill}
-    options |= {"marks": marks, "arrows": arrows, "palette": palette, "bar": bar}
+    options |= {"marks": marks, "arrows": arrows, "palette": palette, "bar": bar, "skin": skin}
     image = picture(strands, closed, radius, fade=fade, **options)
     path = Path(path)
     pixels = np.round(255.0 * image).astype(np.uint8)
@@ -109,6 +112,8 @@ def render_result(dataset: xarray.Dataset, path: str | Path, frame: int = -1, **
         strain = np.asarray(dataset["log_strain"].isel(time=frame))
         options["values"] = [strand.of(strain) for strand in strands]
     closed = [strand.closed for strand in strands]
+    if skin := skin_at(dataset, frame):
+        options = {"skin": skin, "direction": FROM_ABOVE} | options
     return render([s.x for s in strands], closed, float(dataset.attrs["radius"]), path, **options)
 
 
@@ -127,6 +132,7 @@ def picture(
     palette: Callable[[Floats], Floats] = strain_colour,
     bar: bool = True,
     whole: bool = False,
+    skin: Skin | None = None,
 ) -> Floats:
     """The picture that `render` writes, as an array (height, width, 3) of sRGB from 0 to 1.
 
@@ -145,8 +151,10 @@ def picture(
         colours = [np.tile(strand_colour(s), (len(m.vertices), 1)) for s, m in enumerate(meshes)]
     else:
         colours = [palette(m.at_vertices(v)) for m, v in zip(meshes, values, strict=True)]
+    bodies = [] if skin is None else skin.meshes(origin, radius)
+    meshes, colours = meshes + bodies, colours + [skin_colour(m) for m in bodies]
     colours = lit_by_lamp(meshes, colours, shadow_pieces(curves, loops), view)
-    with Stage(view, SUPERSAMPLING) as stage:
+    with Stage(view, SUPERSAMPLING, glass=len(bodies)) as stage:
         image = averaged(stage.shown(meshes, colours), SUPERSAMPLING)
     if fade > 0:
         image = _faded(image, fade)

@@ -21,6 +21,9 @@ Pixels = NDArray[np.uint8]
 MARGIN = 16
 """Rendered beyond the frame on each side [pixels] and cut off, so that no filter meets the border."""
 
+OPACITY = 0.5
+"""Of what lets see through it."""
+
 
 class Stage:
     """Meshes that may move: while they keep their triangles, points and colours are changed in place.
@@ -30,10 +33,11 @@ class Stage:
     view : the camera
     supersampling : pixels rendered for each one of the frame, along each side
     samples : of each pixel at its edges, which is faster and coarser than supersampling
+    glass : so many meshes, the last ones, let see through them
     """
 
-    def __init__(self, view: View, supersampling: int = 1, samples: int = 0) -> None:
-        self._view, self._k, self._samples = view, supersampling, samples
+    def __init__(self, view: View, supersampling: int = 1, samples: int = 0, glass: int = 0) -> None:
+        self._view, self._k, self._samples, self._glass = view, supersampling, samples, glass
         self._open = ExitStack()
         self._surfaces: list[Any] = []
 
@@ -91,10 +95,13 @@ class Stage:
         camera = plotter.camera.copy()
         plotter.clear_actors()
         self._surfaces = []
-        for mesh, values in zip(meshes, rgb, strict=True):
+        for k, (mesh, values) in enumerate(zip(meshes, rgb, strict=True)):
             surface = pyvista.PolyData.from_regular_faces(mesh.vertices, mesh.faces)
             surface.point_data["colour"] = values
-            plotter.add_mesh(surface, scalars="colour", rgb=True, lighting=False, reset_camera=False)
+            through = {"opacity": OPACITY, "culling": "back"} if k >= len(meshes) - self._glass else {}
+            plotter.add_mesh(
+                surface, scalars="colour", rgb=True, lighting=False, reset_camera=False, **through
+            )
             self._surfaces.append(surface)
         plotter.camera = camera
 
