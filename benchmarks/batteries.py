@@ -101,16 +101,10 @@ def mirrored(knot: str, twist: float, short: Mapping[str, Any]) -> list[Found]:
 
 
 def everywhere(knot: str, twist: float, short: Mapping[str, Any], places: int = PLACES) -> Found:
-    """A battery cut at places all along: energy and writhe, and times to 10 % with their median and spread.
-
-    The spread is the robust standard deviation of the logarithm.
-    """
+    """A battery cut at places all along: energy, writhe, and the times to 10 %."""
     rows = [run(knot, twist, cut_at=k / places, **short) for k in range(places)]
-    tenth = np.array([t for row in rows if (t := times(row)[1]) is not None])
-    middle = float(np.median(tenth)) if len(tenth) else None
-    spread = float(1.4826 * np.median(np.abs(np.log(tenth / middle)))) if len(tenth) else None
     kept = {name: rows[0][name] for name in ("knot", "twist_density", "energy_E0", "writhe")}
-    return kept | {"tenth": tenth.tolist(), "median": middle, "spread": spread}
+    return kept | {"tenth": [t for row in rows if (t := times(row)[1]) is not None]}
 
 
 def surveyed(knots: Sequence[str], twists: Sequence[float], short: Mapping[str, Any]) -> list[Found]:
@@ -150,16 +144,20 @@ def everywhere_table(rows: Sequence[Found]) -> str:
     """Either twist of a knot side by side, whatever the place of the cut."""
     cells = []
     for right, left in zip(rows[::2], rows[1::2], strict=True):
+        logs = [np.log(one["tenth"]) for one in (right, left)]
         line: list[object] = [right["knot"], f"±{right['twist_density']:g}"]
-        for one in (right, left):
-            line += [one["energy_E0"]["total"], one["writhe"], one["median"]]
-            line.append(f"{min(one['tenth']):.3g} to {max(one['tenth']):.3g}" if one["tenth"] else None)
-        ratio = None if None in (right["median"], left["median"]) else right["median"] / left["median"]
-        error = [one["spread"] and one["spread"] / math.sqrt(len(one["tenth"])) for one in (right, left)]
-        cells.append([*line, ratio, None if None in error else math.exp(2 * math.hypot(*error))])
-    heads = ["energy [E_0]", "Wr", "to 10 %, median", "range"]
+        for one, log in zip((right, left), logs, strict=True):
+            spread = f"{min(one['tenth']):.3g} to {max(one['tenth']):.3g}" if one["tenth"] else None
+            mean = math.exp(log.mean()) if len(log) else None
+            line += [one["energy_E0"]["total"], one["writhe"], mean, spread]
+        if min(map(len, logs)) < 2:
+            cells.append([*line, None, None])
+            continue
+        error = math.hypot(*(float(log.std(ddof=1)) / math.sqrt(len(log)) for log in logs))
+        cells.append([*line, math.exp(logs[0].mean() - logs[1].mean()), math.exp(2 * error)])
+    heads = ["energy [E_0]", "Wr", "to 10 %, mean", "range"]
     both = [*(f"{head}, +" for head in heads), *(f"{head}, −" for head in heads)]
-    return common.table(["knot", "h θ′", *both, "ratio of medians", "by chance up to"], cells)
+    return common.table(["knot", "h θ′", *both, "ratio of means", "by chance up to"], cells)
 
 
 def _row(found: Found, note: str) -> Iterator[object]:

@@ -10,7 +10,7 @@ import resource
 import subprocess
 import tempfile
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,7 @@ from benchmarks.batteries import PAGE, run, times, variants
 from benchmarks.sweeps import alike, begun, kill, stored, until
 from torsade.figures import battery_map
 from torsade.figures.base import Choice, Table
+from torsade.figures.ranking import agreement
 from torsade.sweep import Catalogue
 
 WORKERS = 2
@@ -119,7 +120,9 @@ def crossing(table: Table) -> list[float]:
         for sign in (1, -1):
             half = own[sign * own[:, 0] >= 0]
             half = half[np.argsort(np.abs(half[:, 0]))]
-            ratio = np.log(np.maximum(half[:, 2], 1e-9) / half[:, 1])
+            ratio = (
+                np.sqrt(half[:, 2] / half[:, 1]) - 1
+            )  # nearly straight, as twist energy grows as the square
             after = np.flatnonzero(ratio > 0)
             if len(after) and after[0] > 0:
                 k = int(after[0])
@@ -174,6 +177,31 @@ def loose_table(rows: Sequence[Found]) -> str:
     return common.table(["knot", "energy [E_0]", "50 %", "10 %", "1 %", "knots on the way"], cells)
 
 
+LOOSE_CAUSES: Mapping[str, Callable[[Found], float]] = {
+    "non-planarity on the way": lambda row: row["non_planarity"]["on_the_way"],
+    "non-planarity, charged": lambda row: row["non_planarity"]["charged"],
+    "torsion on the way": lambda row: row["torsion"]["on_the_way"],
+    "size of the writhe": lambda row: abs(row["writhe"]),
+    "share of stretch and contact": lambda row: (
+        (row["energy_E0"]["stretch"] + row["energy_E0"]["contact"]) / row["energy_E0"]["total"]
+    ),
+    "a trefoil on the way": lambda row: float(
+        any("3_1" in name for name in (row["knot"], *row["intermediate_knots"]))
+    ),
+}
+
+
+def loose_causes_table(rows: Sequence[Found]) -> str:
+    """Correlations of the times of untwisted, unstretched batteries."""
+    known = [row for row in rows if "failed" not in row and None not in times(row)]
+    cells = []
+    for name, cause in LOOSE_CAUSES.items() if len(known) > 3 else ():
+        values = [cause(row) for row in known]
+        found = [agreement(values, [times(row)[k] for row in known]).spearman for k in (1, 2)]
+        cells.append([name, *(f"{rho.value:+.2f} ({rho.low:+.2f}, {rho.high:+.2f})" for rho in found)])
+    return common.table(["", "to 10 %", "to 1 %"], cells)
+
+
 def causes_table(table: Table) -> str:
     """Correlations with their intervals, the time to 10 and 1 %."""
     rows = [dict(zip(table.columns, row, strict=True)) for row in table.rows]
@@ -190,7 +218,7 @@ def causes_table(table: Table) -> str:
                     f"{one[0]['spearman']:+.2f} ({one[0]['low']:+.2f}, {one[0]['high']:+.2f})" if one else "-"
                 )
         cells.append(line)
-    return common.table(["", *(f"|h θ′| {part}, to {share}" for part in parts for share in shares)], cells)
+    return common.table(["", *(f"h θ′ {part}, to {share}" for part in parts for share in shares)], cells)
 
 
 def table_of(table: Table) -> str:
@@ -207,6 +235,7 @@ def tables_of(found: Mapping[str, Any], shown: Mapping[str, Table]) -> dict[str,
         "map-causes": causes_table(shown["causes"]),
         "map-resonances": resonance_table(found["resonances"]),
         "map-loose": loose_table(found["loose"]),
+        "map-loose-causes": loose_causes_table(found["loose"]),
     }
 
 

@@ -90,7 +90,8 @@ def six_table(found: Sequence[Found]) -> str:
     )  # fmt: skip
     rows = [
         (
-            r["throws"], SIX[r["throws"]], r["crossings"], f"{r['writhe']:+d}", f"{r['tau']:.4g}",
+            r["throws"], SIX[r["throws"]], r["crossings"], f"{r['writhe']:+d}" if r["writhe"] else "0",
+            f"{r['tau']:.4g}",
             *(1e6 * r["z_displacement_m"][k] for k in ("a", "relative")), 1e6 * r["z_peak_m"]["a"],
             f"{1e3 * r['gap_m']:.3f}", 1e3 * r["skin_force_N"]["normal"][0],
             1e6 * r["skin_force_N"]["shear"][0], r["c_f"],

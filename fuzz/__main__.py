@@ -25,6 +25,10 @@ SLOWEST = 10.0
 TICKS, PAGE = os.sysconf("SC_CLK_TCK"), os.sysconf("SC_PAGE_SIZE")
 
 
+LIFE = 150.0
+"""Longest processor time of one child [s]: what guides inputs remembers all of them, and grows."""
+
+
 def main() -> None:
     """Read the options; fuzz, try what was found once more, or write the table."""
     parser = argparse.ArgumentParser(prog="python -m fuzz", description=__doc__)
@@ -52,7 +56,15 @@ def fuzz(target: str, folder: Path, seconds: float, wall: float, seed: int) -> N
     used = most = slowest = 0.0
     until = time.monotonic() + wall
     while used < seconds and time.monotonic() < until:
-        command = [sys.executable, "-m", "fuzz.child", target, str(folder), str(seconds - used), str(seed)]
+        command = [
+            sys.executable,
+            "-m",
+            "fuzz.child",
+            target,
+            str(folder),
+            str(min(seconds - used, LIFE)),
+            str(seed),
+        ]
         with (folder / "log").open("wb") as log:
             child = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT)
         spent, harm = 0.0, ""

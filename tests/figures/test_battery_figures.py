@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 import shlex
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from torsade.cli import figure as command
+from torsade.errors import TorsadeError
 from torsade.figures import figure
 from torsade.figures.base import Choice, Table
 from torsade.figures.battery_map import KNOTS, PEAK, SIGNIFICANT, TWISTS, design, slow
 from torsade.figures.runs import results
-from torsade.sweep import Catalogue, Sweep
+from torsade.sweep import Catalogue, Sweep, run
 
 QUICK = Choice(quick=True)
 PAGE = (Path(__file__).resolve().parents[2] / "docs" / "batteries.md").read_text(encoding="utf-8")
@@ -114,6 +117,37 @@ def test_the_same_command_runs_nothing_again(made: tuple[Path, dict[str, Table]]
     before = sorted(path.name for path in (folder / "sweeps" / "battery-map").iterdir())
     assert command.draw("5-3", str(folder), "both", True, False, "1", True) == 0
     assert sorted(path.name for path in (folder / "sweeps" / "battery-map").iterdir()) == before
+
+
+def rows(folder: Path) -> dict[str, dict[str, object]]:
+    """What is stored, by key, but for times."""
+    found = Catalogue(folder).query("SELECT * EXCLUDE (point, wall_s) FROM runs WHERE status = 'done'")
+    every = [dict(zip(found.columns, row, strict=True)) for row in found.rows]
+    return {str(row.pop("key")): row for row in every}
+
+
+@pytest.mark.slow
+def test_killed_half_way_it_goes_on_to_the_same_bits(
+    made: tuple[Path, dict[str, Table]], tmp_path: Path
+) -> None:
+    """SIGKILL to the command, which can do nothing about it; what was stored is not run again."""
+    folder = tmp_path / "sweeps" / "battery-map"
+    words = ["figure", "5-3", "--quick", "--workers", "1", "--json", "--out", str(tmp_path)]
+    running = subprocess.Popen(
+        [sys.executable, "-m", "torsade", *words], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+    )
+    stored: dict[str, dict[str, object]] = {}
+    while running.poll() is None and len(stored) < 5:
+        time.sleep(0.2)
+        with contextlib.suppress(TorsadeError):  # nothing there yet
+            stored = rows(folder)
+    running.kill()
+    running.wait()
+    stored = rows(folder)
+    assert 5 <= len(stored) < 20
+    done = run(design(QUICK), folder, workers=1)
+    assert (done.before, done.ran, done.failed) == (len(stored), 20 - len(stored), 0)
+    assert rows(folder) == rows(made[0] / "sweeps" / "battery-map")
 
 
 @pytest.mark.slow

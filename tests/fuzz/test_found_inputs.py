@@ -43,6 +43,7 @@ FOUND = {
     "a number behind zeros": ("codes", b"code\n[2 " + b"0" * 20 + b"7" + b"0" * 30 + b"]"),
     "a crossing of many labels": ("codes", b"code\nX[" + b"A4," * 5000 + b"A5]"),
     "TOML nested without end": ("specs", b"toml\na = " + b"[" * 5000),
+    "TOML with a number of 5000 digits": ("specs", b"toml\nseed = " + b"9" * 5000),
     "TOML with a key of 100 000 parts": ("specs", b"toml\n1" + b".2" * 100_000 + b" = 3"),
     "a command of 100 000 words": ("shell", b"torsade\nrun\ntighten\n" + b"--unt10 s\n" * 100_000),
     "a file whose name is longer than a sentence": ("shell", b"torsade\nrun\n--spec\n--sp" + b"(" * 900),

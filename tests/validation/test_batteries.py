@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from torsade.knots.likeness import likeness
 from torsade.protocols import Battery
 
 CRITICAL = 2 * math.pi * math.sqrt(3) * 1.3
@@ -84,3 +85,30 @@ def test_twist_discharges_all_knots_fast() -> None:
     }
     assert max(tenth[knot, 3.0] for knot in ("3_1", "4_1", "5_1")) < 2
     assert tenth["3_1", 0.0] > 2.5 * tenth["4_1", 0.0]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("knot", "twist"), [("4_1", 2.0), ("6_3", 2.0)])
+def test_amphichiral_knots_discharge_as_their_mirror_images_by_the_other_twist(
+    knot: str, twist: float
+) -> None:
+    """m4_1 is 4_1: energies at the cut and all discharge times agree to 1 %, shapes are mirror images."""
+    results = [Battery(knot=name, twist=t).run() for name, t in ((knot, twist), (f"m{knot}", -twist))]
+    right, left = (Battery.report(result) for result in results)
+    assert right["knot_kept"]
+    assert left["knot_kept"]
+    assert left["energy_E0"]["total"] == pytest.approx(right["energy_E0"]["total"], rel=0.01)
+    assert left["writhe"] == pytest.approx(-right["writhe"], abs=0.01)
+    assert left["discharge_time_T0"] == pytest.approx(right["discharge_time_T0"], rel=0.01)
+    shapes = [result.dataset["charge_position"].values[-1].astype(float) for result in results]
+    apart = likeness(shapes[0] * [1, 1, -1], shapes[1]).distance
+    assert apart < 0.02 * results[0].dataset.attrs["radius"]
+
+
+@pytest.mark.slow
+def test_a_trefoil_tells_one_twist_from_the_other() -> None:
+    """In energy by more than 1 %, in writhe, and in how it discharges."""
+    right, left = (Battery.report(Battery(knot="3_1", twist=t).run()) for t in (2.0, -2.0))
+    assert abs(left["energy_E0"]["total"] / right["energy_E0"]["total"] - 1) > 0.01
+    assert abs(right["writhe"] + left["writhe"]) > 1
+    assert abs(left["discharge_time_T0"]["10"] / right["discharge_time_T0"]["10"] - 1) > 0.2

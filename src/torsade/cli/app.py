@@ -318,8 +318,8 @@ def _figure(
     out: Annotated[
         str,
         Parameter(
-            help="Folder for the picture, the tables and, in runs/, the results they come from, which other "
-            "figures use too [default: figures]."
+            help="Folder for the picture, the tables and, in runs/ and sweeps/, what they come from, which "
+            "other figures use too [default: figures]."
         ),
     ] = "figures",
     preset: Annotated[

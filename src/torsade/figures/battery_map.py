@@ -144,7 +144,7 @@ CAUSES = {
     "non_planarity": "non-planarity on the way",
     "non_planarity_charged": "non-planarity, charged",
     "torsion": "torsion on the way",
-    "abs_Wr": "|Wr| at the cut",
+    "abs_Wr": "size of the writhe",
     "energy_E0": "energy at the cut",
     "stretch_share": "share of stretch and contact",
 }

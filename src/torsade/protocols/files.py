@@ -115,6 +115,8 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         raise TorsadeError(f'{name} is not TOML: {reason}; write lines such as force = "15 N"') from None
     except UnicodeDecodeError:
         raise TorsadeError(f"cannot read {name} (not text in UTF-8); give a TOML specification") from None
+    except ValueError:  # the interpreter makes no whole numbers of so many digits
+        raise TorsadeError(f"{name} has a number of thousands of digits; give one in range") from None
 
 
 def check_protocol(protocol: object, where: str) -> type[Spec]:
