@@ -21,7 +21,7 @@ from torsade.motion import ends, near, rates, scheme
 from torsade.motion.overdamped import Motion, Outcome, Stepping, model
 from torsade.protocols.prison_escape import PrisonEscape
 from torsade.rod.contact import find_drag
-from torsade.rod.factor import Factor, no_factor
+from torsade.rod.factor import WORTH, Factor, no_factor, pattern
 from torsade.rod.kinematics import edge_geometry
 from torsade.rod.neighbours import edge_midpoints
 
@@ -155,14 +155,18 @@ def capture(motion: Motion) -> Moment:
     guess = motion.state.v.copy()
     motion.advance(motion.time + 1.0, 1)
     state, g = motion.state, scheme.stage_work(a)
-    edge_geometry(state.x, a.edges, g.length, g.tangent)
+    edge_geometry(a, state.x, g.length, g.tangent)
     edge_midpoints(state.x, a.edges, g.mid)
     beside = near.find_near(a, m, control, g.mid, g.length)
     g.x[:], g.theta[:], g.v[:] = state.x, state.theta, state.v
-    _, factor = rates.rates(
-        a, m, bc, g.x, g.theta, g.tangent, state.reference_twist, beside.contacts, no_factor(),
-        control.solver_tolerance, g.v, g.omega, g.angular, g.work,
-    )  # fmt: skip
+    factor = no_factor()
+    for _ in range(2):
+        status = rates.rates(
+            a, m, bc, g.x, g.theta, g.tangent, state.reference_twist, beside.contacts, factor,
+            control.solver_tolerance, g.v, g.omega, g.angular, g.work,
+        )  # fmt: skip
+        if status == rates.STALE:
+            factor = pattern(a, beside.contacts, g.work.mid, m.diameter, WORTH)
     find_drag(a, m, state.x, g.work.length, g.work.mid, beside.contacts)
     g.v0[:], g.angular0[:] = g.v, g.angular
     return Moment(beside, factor, g, guess)

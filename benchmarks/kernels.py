@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import statistics
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import numba
@@ -17,18 +18,20 @@ from benchmarks import common
 from torsade.motion.guard import first_crossing, largest_move
 from torsade.motion.near import find_near, list_near
 from torsade.motion.overdamped import Motion
-from torsade.motion.rates import hold_bodies, powers
+from torsade.motion.rates import _material_rates, hold_bodies, powers
 from torsade.motion.scheme import ONE_STAGE, START, embedded_error, evaluate
 from torsade.rod.contact import add_contact_forces, add_drag_torques, find_contacts, find_drag
 from torsade.rod.damping import solve_spin
 from torsade.rod.elasticity import add_elastic_forces, hinge_twist
-from torsade.rod.factor import WORTH, assemble, factorise, pattern, substitute
+from torsade.rod.factor import WORTH, assemble, eliminate, pattern, substitute
 from torsade.rod.kinematics import (
     carry_directors,
     edge_geometry,
     reference_twist_change,
 )
 from torsade.rod.neighbours import edge_midpoints
+
+PAGE = Path(__file__).parents[1] / "docs" / "performance.md"
 
 WHOLE, ASSEMBLED, FACTORISED = "evaluation", "matrix assembled", "matrix factorised"
 
@@ -37,16 +40,10 @@ NUMBERS = (embedded_error, first_crossing, largest_move)
 
 
 @numba.njit
-def _matrix(a, eta_A, contacts, fixed, factor):  # type: ignore[no-untyped-def]
+def _matrix(a, eta_A, contacts, fixed, factor, v):  # type: ignore[no-untyped-def]
     """Assemble and factorise: factors replace the matrix, so one cannot be repeated without the other."""
     assemble(a, eta_A, contacts, fixed, factor)
-    return factorise(factor)
-
-
-@numba.njit
-def _whole(job, a, m, bc, state, contacts, factor, control, dt, stages, g):  # type: ignore[no-untyped-def]
-    """An evaluation, named argument by argument: the compiler splices it in."""
-    return evaluate(job, a, m, bc, state, contacts, factor, control, dt, stages, g)
+    return eliminate(factor, v)
 
 
 def evaluation(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
@@ -54,18 +51,18 @@ def evaluation(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
     a, m, bc, state, control = motion.assembly, motion.model, motion.boundary, motion.state, motion.control
     g, contacts, factor, add = now.stages, now.near.contacts, now.factor, timed.add
     w = g.work
-    whole = (START, a, m, bc, state, contacts, factor, control, 0.0, ONE_STAGE, g)
-    add(WHOLE, _whole if timed.compiled else evaluate, *whole)
+    whole = (START, False, a, m, bc, state, contacts, factor, control, 0.0, ONE_STAGE, g)
+    add(WHOLE, evaluate, *whole)
     # Scratch for kernels that add to what they are given, so that what the others read stays as it is.
     force, torque, weight = np.zeros_like(w.force), np.zeros_like(w.torque), np.zeros_like(w.spin_weight)
     omega, v = g.omega.copy(), g.v.copy()
-    add("geometry", edge_geometry, g.x, a.edges, w.length, w.tangent)
+    add("geometry", edge_geometry, a, g.x, w.length, w.tangent)
     add("geometry", edge_midpoints, g.x, a.edges, w.mid)
-    add("reference twist", reference_twist_change, g.tangent, w.tangent, a.hinges, w.change)
+    add("reference twist", reference_twist_change, a, g.tangent, w.tangent, w.change)
     add("reference twist", hinge_twist, g.theta, state.reference_twist, a.hinges, w.m)
     add(
         "elastic forces", add_elastic_forces, a, m.EA, m.B, m.C, m.bend_present, w.length, w.tangent, w.m,
-        force, torque,
+        w.edge_force, force, torque,
     )  # fmt: skip
     add("contacts found", find_contacts, m, w.mid, contacts)
     add("contact forces", add_contact_forces, a, m, w.length, w.tangent, contacts, force)
@@ -73,15 +70,20 @@ def evaluation(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
     add("bodies held", hold_bodies, a, bc, contacts, w.held, w.component)
     add("torques of drag", add_drag_torques, a, m, g.v, w.tangent, contacts, torque, weight)
     add("spin", solve_spin, a, m.eta_J, w.tangent, w.torque, w.spin_weight, bc.turned, bc.spin, omega, w.spin)
+    add(
+        "material angles", _material_rates, a, g.tangent, w.tangent, w.length, g.v, g.omega,
+        g.angular.copy(),
+    )  # fmt: skip
+    add("work and dissipation", powers, a, m, bc, g.v, g.omega, contacts, w)
     if factor.tape.size:
         add(ASSEMBLED, assemble, a, m.eta_A, contacts, w.held, factor)
-        add(FACTORISED, _matrix, a, m.eta_A, contacts, w.held, factor)
+        add(FACTORISED, _matrix, a, m.eta_A, contacts, w.held, factor, v)
         add("substituted", substitute, factor, v)
 
 
 def step(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
     """Add what a step does besides evaluations."""
-    a, m, bc, state, control = motion.assembly, motion.model, motion.boundary, motion.state, motion.control
+    a, m, state, control = motion.assembly, motion.model, motion.state, motion.control
     g, near, add = now.stages, now.near, timed.add
     w = g.work
     moved = state.x + 1e-3 * control.radius * np.sin(np.arange(state.x.size)).reshape(-1, 3)
@@ -90,9 +92,8 @@ def step(motion: Motion, now: common.Moment, timed: _Kernels) -> None:
     add("guard against crossing", largest_move, state.x, moved)
     add(
         "guard against crossing", first_crossing, a, near.apart, near.guarded, near.count[0], state.x,
-        moved, g.length, g.mid,
+        moved, g.length, g.mid, largest_move(state.x, moved),
     )  # fmt: skip
-    add("work and dissipation", powers, a, m, bc, g.v, g.omega, near.contacts, w)
     add("directors", carry_directors, a.edge_start, director, g.tangent, w.tangent)
     add("pairs listed (when nodes have moved)", list_near, m, control, g.mid, g.length, near)
     add("pairs found (when they have gone far)", find_near, a, m, control, g.mid, g.length)
@@ -134,6 +135,7 @@ class _Kernels:
 def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     options = common.parser(__doc__)
     options.add_argument("--knot", default="reef", choices=common.BUILT_IN)
+    options.add_argument("--write", action="store_true", help="put the tables into docs/performance.md")
     given = options.parse_args(arguments)
     at_least, rounds = (1e-6, 1) if given.quick else (2e-3, 51)
     inner, outer = (_Kernels(at_least, rounds, not given.quick) for _ in range(2))
@@ -173,6 +175,8 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
         f"{found['evaluations_per_step']:.1f} evaluations, {found['refused_per_step']:.2f} refused steps and "
         f"{found['lists_per_step']:.3f} neighbour lists per step",
     ]
+    if given.write:
+        common.put("\n\n".join(tables), PAGE, "kernels")
     return common.show(found, tables, given.json)
 
 

@@ -17,6 +17,8 @@ import numpy as np
 
 from benchmarks import common
 
+PAGE = Path(__file__).parents[1] / "docs" / "performance.md"
+
 SIZES = (100, 250, 1_000, 10_000, 100_000)
 SETTLE = 24
 """Steps before the clock starts; by then the strands touch all along."""
@@ -85,6 +87,7 @@ def exponent(rows: Sequence[dict[str, float]], key: str) -> float:
 
 def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     options = common.parser(__doc__)
+    options.add_argument("--write", action="store_true", help="put the tables into docs/performance.md")
     given = options.parse_args(arguments)
     sizes = (100, 250) if given.quick else SIZES
     repeats = 3 if given.quick else 9
@@ -116,6 +119,8 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
         f"explicit step of one evaluation\n"
         f"peak memory at {largest['nodes']:,} nodes: {largest['bytes_per_node'] / 1e3:.2f} kB per node",
     ]
+    if given.write:
+        common.put("\n\n".join(tables), PAGE, "steps")
     return common.show(found, tables, given.json)
 
 

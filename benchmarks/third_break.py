@@ -75,11 +75,13 @@ class Rod:
         """Forces, torques and tangents of the present state."""
         m = self.cascade.motion
         a, state, work = m.assembly, m.state, m.work
-        edge_geometry(state.x, a.edges, work.length, work.tangent)
+        edge_geometry(a, state.x, work.length, work.tangent)
         hinge_twist(state.theta, state.reference_twist, a.hinges, work.m)
         work.force[:], work.torque[:] = 0.0, 0.0
         B, C = m.rod.B, m.rod.C
-        add_elastic_forces(a, 0.0, B, C, False, work.length, work.tangent, work.m, work.force, work.torque)
+        add_elastic_forces(
+            a, 0.0, B, C, False, work.length, work.tangent, work.m, work.edge_force, work.force, work.torque
+        )
 
     def _pulled(self, tangent: np.ndarray, pull: np.ndarray) -> np.ndarray:
         """What impulses along edges (n,) do to nodes (n_nodes, 3)."""
@@ -105,8 +107,8 @@ class Rod:
             state.x[:] += moved
             state.v[:] += moved / dt
         state.theta[:] += dt * state.omega
-        edge_geometry(state.x, a.edges, work.length, work.new_tangent)
-        reference_twist_change(before, work.new_tangent, a.hinges, work.change)
+        edge_geometry(a, state.x, work.length, work.new_tangent)
+        reference_twist_change(a, before, work.new_tangent, work.change)
         state.reference_twist[:] += work.change
         carry_directors(a.edge_start, state.director, before, work.new_tangent)
         self._forces()

@@ -61,6 +61,8 @@ SCRIPTS = (
     "movies",
     "block",
     "ensembles",
+    "protocols",
+    "cost",
 )
 
 

@@ -31,6 +31,7 @@ njit: Any = numba.njit
 PACKAGE = Path(__file__).parent
 KERNEL_SOURCES = (
     "_compile.py",
+    "arrays.py",
     "assembly.py",
     "topology",
     "rod",

@@ -138,7 +138,7 @@ def test_first_crossing_finds_the_first_pair_of_the_list():
     rows = np.arange(len(pairs))
 
     def first(rows, end):
-        k = first_crossing(a, pairs, rows, len(rows), x0, end, length, mid)
+        k = first_crossing(a, pairs, rows, len(rows), x0, end, length, mid, largest_move(x0, end))
         return tuple(pairs[k]) if k >= 0 else None
 
     assert first(rows, x1) == (1, 4)

@@ -32,7 +32,7 @@ def away_from_base(case, size=0.4):
 def material_director(a, probe, x, theta):
     """d_1 of every edge: the base director transported straight to the present tangent, turned by theta."""
     length, tangent = np.empty(len(a.edges)), np.empty((len(a.edges), 3))
-    edge_geometry(x, a.edges, length, tangent)
+    edge_geometry(a, x, length, tangent)
     u = np.empty_like(tangent)
     for e in range(len(u)):
         transport(probe.state.director[e], probe.tangent[e], tangent[e], u[e])

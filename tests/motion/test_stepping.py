@@ -10,9 +10,11 @@ import pytest
 from rod.helpers import toy_model
 from torsade.assembly import assemble, initial_state
 from torsade.errors import TorsadeError
-from torsade.motion import ends, stepping
+from torsade.motion import ends, scheme, stepping
 from torsade.motion.overdamped import Motion, Outcome, Stepping
-from torsade.rod.factor import no_factor
+from torsade.motion.rates import OK, STALE
+from torsade.rod.contact import contacts_among
+from torsade.rod.factor import no_factor, pattern
 
 TAU = 0.01  # eta/E of the toy material [s]
 
@@ -173,3 +175,29 @@ def test_an_iterative_solve_gives_the_same_motion():
         )  # fmt: skip
         ends_at.append(motion.state.x.copy())
     assert np.abs(ends_at[1] - ends_at[0]).max() < 1e-8
+
+
+@pytest.mark.parametrize("job", [scheme.STEP, scheme.SPECTRUM])
+def test_a_job_that_waited_for_a_pattern_goes_on_as_if_it_had_been_there(job):
+    """Stopped before its first stage and resumed, or never stopped: the same rates to the bit."""
+    motion = smooth_motion(None)
+    motion.advance(1e-3)
+    a, m, bc, state, control = motion.assembly, motion.model, motion.boundary, motion.state, motion.control
+    contacts = contacts_among(np.empty((0, 2), np.int64))
+    made = pattern(a, contacts, motion._scratch.mid, m.diameter, np.inf)
+    found = []
+    for stops in (False, True):
+        g = scheme.stage_work(a)
+        for name in ("tangent", "v0", "angular0", "ledger"):
+            getattr(g, name)[:] = getattr(motion._scratch, name)
+
+        def evaluate(resumed, factor, g=g):
+            stages = np.int64(5)
+            return scheme.evaluate(job, resumed, a, m, bc, state, contacts, factor, control, 1e-4, stages, g)
+
+        if stops:
+            assert evaluate(False, no_factor()) == STALE
+        assert evaluate(stops, made) == OK
+        found.append((g.x.copy(), g.v.copy(), g.angular.copy(), g.ledger.copy(), g.estimate.copy()))
+    for one, other in zip(*found, strict=True):
+        assert np.array_equal(one, other)

@@ -7,6 +7,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from torsade.arrays import columns
 from torsade.assembly import Assembly, State, assemble, initial_state
 from torsade.material import Material, Section
 from torsade.motion import rates as rates_module
@@ -127,8 +128,8 @@ class Probe:
         direct: bool = True,
     ) -> None:
         self.a, self.m, self.state, self.bc = a, m, state, bc or free(a)
-        self.length, self.tangent = np.empty(len(a.edges)), np.empty((len(a.edges), 3))
-        edge_geometry(state.x, a.edges, self.length, self.tangent)
+        self.length, self.tangent = np.empty(len(a.edges)), columns(len(a.edges))
+        edge_geometry(a, state.x, self.length, self.tangent)
         self.work = rates_module.rate_work(a)
         pairs = pairs_within(a, state.x, 3 * m.diameter, m.exclusion_edges, m.exclusion_length)
         self.contacts = contacts_among(pairs)
@@ -160,7 +161,7 @@ class Probe:
     def rates(self, x: Floats, theta: Floats, tolerance: float = 1e-12) -> tuple[Floats, Floats, Floats]:
         """Node velocities, spins about the tangent, and rates of the material angles."""
         v, omega, angular = np.zeros_like(x), np.empty_like(theta), np.empty_like(theta)
-        status, _ = rates_module.rates(
+        status = rates_module.rates(
             self.a, self.m, self.bc, x, theta, self.tangent, self.state.reference_twist,
             self.contacts, self.factor, tolerance, v, omega, angular, self.work,
         )  # fmt: skip

@@ -8,7 +8,7 @@ import pytest
 from rod.helpers import Probe, circle, random_strand, straight, tangle, toy_model
 from torsade.assembly import assemble, initial_state
 from torsade.motion import ends
-from torsade.rod.damping import solve_spin, spin_work
+from torsade.rod.damping import power_of_drag, solve_spin, spin_work
 
 RNG_SEEDS = [0, 1, 2]
 
@@ -51,6 +51,20 @@ def test_velocities_solve_the_dense_system(seed, closed, case):
     expected = dense_velocities(a, M, force, bc.held, bc.velocity)
     assert np.abs(v - expected).max() < 1e-8 * np.abs(expected).max()
     assert np.array_equal(v[bc.held], bc.velocity[bc.held])
+
+
+@pytest.mark.parametrize("seed", RNG_SEEDS)
+def test_power_of_some_nodes_is_their_part_of_the_quadratic_form(seed):
+    """Sum of v_i . (M v)_i over the nodes chosen, M made column by column; over all, what drag dissipates."""
+    a, state, h = tangle(seed)
+    probe = Probe(a, toy_model(h), state)
+    M = probe.drag_matrix(state.x, state.theta)
+    rng = np.random.default_rng(seed)
+    v = rng.normal(size=state.x.shape)
+    each = np.einsum("ic,ic->i", v, M @ v)
+    for chosen in (rng.uniform(size=len(v)) < 0.3, np.ones(len(v), bool), np.zeros(len(v), bool)):
+        power = power_of_drag(a, probe.m.eta_A, probe.contacts, v, chosen)
+        assert power == pytest.approx(each[chosen].sum(), rel=1e-11, abs=1e-12 * np.abs(each).sum())
 
 
 def test_bodies_apart_float_each_on_its_own():

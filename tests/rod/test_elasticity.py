@@ -32,6 +32,23 @@ def test_force_is_minus_the_gradient(case, present, part):
     assert np.abs(force).max() > 0
 
 
+@pytest.mark.parametrize("present", [False, True])
+def test_short_fibers_side_by_side(present):
+    """Fibers of one, two and three edges and a triangle, in one assembly: forces are gradients there too."""
+    rng = np.random.default_rng(4)
+    strands = [0.3 * np.arange(n)[:, None] + 0.1 * rng.normal(size=(n, 3)) + 5.0 * n for n in (2, 3, 4)]
+    strands.append(circle(3, 0.3) + 0.05 * rng.normal(size=(3, 3)))
+    a = assemble(strands, [False, False, False, True])
+    state = initial_state(a, strands)
+    state.theta[:] += rng.normal(size=len(state.theta))
+    probe = Probe(a, toy_model(h=1e-3, bend_present=present, **ALONE["all"]), state)
+    force, torque = probe.forces(state.x, state.theta)
+    by_x = -gradient(lambda x: probe.energy(x, state.theta), state.x, 1e-4)
+    by_theta = -gradient(lambda theta: probe.energy(state.x, theta), state.theta, 1e-2)
+    assert np.abs(force - by_x).max() < 1e-6 * np.abs(force).max()
+    assert np.abs(torque - by_theta).max() < 1e-7 * np.abs(torque).max()
+
+
 @pytest.mark.parametrize("case", range(3))
 @pytest.mark.parametrize("present", [False, True])
 def test_forces_and_moments_balance(case, present):

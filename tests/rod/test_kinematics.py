@@ -28,7 +28,7 @@ def unit(rng, n=None):
 
 def tangents(a, x):
     length, tangent = np.empty(len(a.edges)), np.empty((len(a.edges), 3))
-    edge_geometry(x, a.edges, length, tangent)
+    edge_geometry(a, x, length, tangent)
     return length, tangent
 
 
@@ -88,13 +88,10 @@ def test_first_directors_are_carried_in_place():
 
 
 @settings(deadline=None, max_examples=200)
-@given(st.floats(-1, 1), st.floats(-1, 1), st.sampled_from([1.0, 1e-2, 1e-4, 1e-9]))
-def test_small_atan_is_atan2(y, x, size):
-    """The series is exact to round-off where it is used, and atan2 everywhere else."""
-    if x == y == 0:
-        return
-    expected = math.atan2(y * size, x)
-    assert small_atan(y * size, x) == pytest.approx(expected, rel=4e-16, abs=1e-300)
+@given(st.floats(-0.02, 0.02), st.sampled_from([1.0, 1e-2, 1e-4, 1e-9]))
+def test_small_atan_is_atan(q, size):
+    """The series is exact to round-off where it is used."""
+    assert small_atan(q * size) == pytest.approx(math.atan(q * size), rel=4e-16, abs=1e-300)
 
 
 @pytest.mark.parametrize("case", range(3))
@@ -113,7 +110,7 @@ def test_two_ways_to_the_directors(case, size):
     spread_directors(a.hinges, t0, state.reference_twist, spread)
     assert np.allclose(spread, state.director, rtol=0, atol=1e-13)
     change = np.empty(len(a.hinges))
-    reference_twist_change(t0, t1, a.hinges, change)
+    reference_twist_change(a, t0, t1, change)
     carry_directors(a.edge_start, spread, t0, t1)
     spread_directors(a.hinges, t1, state.reference_twist + change, spread)
     assert np.allclose(spread, carried(state.director, t0, t1), rtol=0, atol=1e-12)
@@ -142,7 +139,7 @@ def test_link_survives_large_deformation(seed):
     for s in np.linspace(0, 1, 41)[1:]:
         x = (1 - s) * x0 + s * x1
         _, t1 = tangents(a, x)
-        reference_twist_change(t0, t1, a.hinges, change)
+        reference_twist_change(a, t0, t1, change)
         state.reference_twist[:] += change
         t0 = t1
         link = state.reference_twist.sum() / (2 * np.pi) + writhe(x)

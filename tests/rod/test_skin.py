@@ -15,6 +15,7 @@ from torsade.rod.skin import (
     add_skin_drag,
     add_skin_forces,
     add_skin_torques,
+    power_of_skin,
     skin_energy,
     weigh_skin,
 )
@@ -69,6 +70,19 @@ def test_action_equals_reaction():
     add_skin_drag(a, bc.skin, v, drag)
     ground = bc.skin.ground * v[-2:].sum(axis=0)
     assert np.abs(drag.sum(axis=0) - ground).max() < 1e-12 * np.abs(drag).max()
+
+
+def test_power_of_some_nodes_is_their_part_of_what_drag_takes():
+    """Sum of v_i . (M v)_i over the nodes chosen, cylinders among them."""
+    a, state, bc, m = wrapped()
+    found(a, m, bc.skin, state.x)
+    rng = np.random.default_rng(7)
+    v, drag = rng.normal(size=state.x.shape), np.zeros_like(state.x)
+    weigh_skin(a, m, bc.skin, v)
+    add_skin_drag(a, bc.skin, v, drag)
+    for chosen in (rng.uniform(size=len(v)) < 0.4, np.ones(len(v), bool)):
+        expected = (v * drag).sum(axis=1)[chosen].sum()
+        assert power_of_skin(a, bc.skin, v, chosen) == pytest.approx(expected, rel=1e-11)
 
 
 def test_skin_presses_as_a_strand_does():

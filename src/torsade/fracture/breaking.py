@@ -104,7 +104,7 @@ def advance_unbroken(
 
 def stress_of_state(a: Assembly, b: Bearing, state: State, g: Work) -> None:
     """Stress at every hinge of a state, into b.stress."""
-    edge_geometry(state.x, a.edges, g.length, g.new_tangent)
+    edge_geometry(a, state.x, g.length, g.new_tangent)
     hinge_twist(state.theta, state.reference_twist, a.hinges, g.m)
     hinge_stress(a, b, g.new_tangent, g.m)
 

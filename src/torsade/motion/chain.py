@@ -219,7 +219,7 @@ class Chain(NamedTuple):
     def moved(self, shape: Shape, change: Floats) -> Shape:
         """The shape after a change (n_edges, 4) of its edges and angles; directors are carried along."""
         edge, twist = np.empty_like(shape.edge), np.empty(len(self.assembly.hinges))
-        chain_kernels.turn(shape.edge, change, self.freedom, self.assembly.hinges, edge, twist)
+        chain_kernels.turn(shape.edge, change, self.freedom, self.assembly, edge, twist)
         return shape._replace(
             edge=edge, theta=shape.theta + change[:, 3], reference_twist=shape.reference_twist + twist
         )

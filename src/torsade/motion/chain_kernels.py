@@ -65,7 +65,7 @@ def twist_gradient(length: Floats, tangent: Floats, out: Floats) -> None:
             out[e + 1, c] += half[c] / (chi * length[e + 1])
 
 
-def turn(edge: Floats, change: Floats, freedom: Ints, hinges: Ints, after: Floats, twist: Floats) -> None:
+def turn(edge: Floats, change: Floats, freedom: Ints, a: Assembly, after: Floats, twist: Floats) -> None:
     """Edges (n, 3) after a change (n, 4) of edges and angles, and that of every hinge's reference twist.
 
     Edges that keep their length turn on their sphere by the angle that the change stands for.
@@ -83,7 +83,7 @@ def turn(edge: Floats, change: Floats, freedom: Ints, hinges: Ints, after: Float
         for c in range(3):
             after[e, c] = length[e] * math.cos(angle) * tangent[e, c] + share * change[e, c]
     directions(after, length, turned)
-    reference_twist_change(tangent, turned, hinges, twist)
+    reference_twist_change(a, tangent, turned, twist)
 
 
 def derivatives(

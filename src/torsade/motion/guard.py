@@ -66,18 +66,35 @@ def passes_through(x0: Floats, x1: Floats, i0: Index, i1: Index, j0: Index, j1: 
 
 
 def first_crossing(
-    a: Assembly, pairs: Ints, rows: Ints, count: Index, x0: Floats, x1: Floats, length: Floats, mid: Floats
+    a: Assembly,
+    pairs: Ints,
+    rows: Ints,
+    count: Index,
+    x0: Floats,
+    x1: Floats,
+    length: Floats,
+    mid: Floats,
+    largest: float,
 ) -> Index:
     """First of pairs[rows[:count]] of edges that pass through each other as nodes move from x0 to x1, or -1.
 
-    Nodes move straight. Edge lengths (n_edges,) and midpoints (n_edges, 3) at x0 bound the distance from
-    below; only where that bound is not enough is the motion followed.
+    Nodes move straight, by `largest` [m] at most. Edge lengths (n_edges,) and midpoints (n_edges, 3) at x0
+    bound the distance from below, first with the largest move, then with that of the nodes at hand; only
+    where that is not enough is the motion followed.
     """
     edges = a.edges
     for n in range(count):
-        k: Index = rows[n]
-        e = pairs[k, 0]
-        f = pairs[k, 1]
+        k = np.uintp(rows[n])
+        e = np.uintp(pairs[k, 0])
+        f = np.uintp(pairs[k, 1])
+        dx = mid[f, 0] - mid[e, 0]
+        dy = mid[f, 1] - mid[e, 1]
+        dz = mid[f, 2] - mid[e, 2]
+        squared = dx * dx + dy * dy + dz * dz
+        half = 0.5 * (length[e] + length[f])
+        safe = 2.0 * largest + half
+        if squared > safe * safe:
+            continue
         i0 = edges[e, 0]
         i1 = edges[e, 1]
         j0 = edges[f, 0]
@@ -87,12 +104,10 @@ def first_crossing(
             max(_relative_move(x0, x1, i1, j0), _relative_move(x0, x1, i1, j1)),
         )
         move = math.sqrt(move)
-        dx = mid[f, 0] - mid[e, 0]
-        dy = mid[f, 1] - mid[e, 1]
-        dz = mid[f, 2] - mid[e, 2]
-        safe = move + 0.5 * (length[e] + length[f])
-        if dx * dx + dy * dy + dz * dz <= safe * safe and passes_through(x0, x1, i0, i1, j0, j1, move):
-            return k
+        safe = move + half
+        if squared <= safe * safe and passes_through(x0, x1, i0, i1, j0, j1, move):
+            crossed: Index = rows[n]
+            return crossed
     return -1
 
 

@@ -94,7 +94,7 @@ def crossing(
         pairs = neighbour_pairs(a, mid, reach, NEXT, 0.0)
         rows = np.empty(pairs.shape[0], np.int64)
         count = near_rows(pairs, mid, reach, rows)
-    k = first_crossing(a, pairs, rows, count, x0, x1, length, mid)
+    k = first_crossing(a, pairs, rows, count, x0, x1, length, mid, move)
     return (pairs[k, 0], pairs[k, 1]) if k >= 0 else (-1, -1)
 
 
@@ -104,7 +104,7 @@ def measure(a: Assembly, m: Model, bc: Boundary, state: State, w: Work, out: Flo
     Returns the pairs of edges in contact (n_contacts, 2); w.drag_torque holds the torques [N m] that the
     velocities of the state exert by collision drag.
     """
-    edge_geometry(state.x, a.edges, w.length, w.tangent)
+    edge_geometry(a, state.x, w.length, w.tangent)
     edge_midpoints(state.x, a.edges, w.mid)
     pairs = neighbour_pairs(a, w.mid, m.diameter, m.exclusion_edges, m.exclusion_length)
     contacts = contacts_among(pairs)

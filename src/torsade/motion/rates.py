@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from torsade._compile import compile_kernels
-from torsade.arrays import Bools, Floats, Index, Ints
+from torsade.arrays import ONE, Bools, Floats, Index, Ints, columns
 from torsade.assembly import Assembly
 from torsade.motion.ends import Boundary
 from torsade.rod.contact import (
@@ -22,8 +22,8 @@ from torsade.rod.contact import (
 from torsade.rod.damping import (
     MobilityWork,
     SpinWork,
-    apply_drag,
     mobility_work,
+    power_of_drag,
     solve_mobility,
     solve_spin,
     spin_work,
@@ -35,24 +35,25 @@ from torsade.rod.elasticity import (
     stretch_energy,
     twist_energy,
 )
-from torsade.rod.factor import Factor, renewed, usable
+from torsade.rod.factor import Factor, serves
 from torsade.rod.kinematics import edge_geometry, reference_twist_change
 from torsade.rod.neighbours import edge_midpoints
 from torsade.rod.skin import (
     MOST_ROUNDS,
     SETTLED,
-    add_skin_drag,
     add_skin_forces,
     add_skin_torques,
     join_skin,
     on_skin,
+    power_of_skin,
     weigh_skin,
 )
 
 OK = 0
 LOOSE = 1
 UNSOLVED = 2
-DENSE = 3
+STALE = 3
+DENSE = 4
 
 
 class Work(NamedTuple):
@@ -66,6 +67,7 @@ class Work(NamedTuple):
     spin_weight: Floats
     m: Floats
     change: Floats
+    edge_force: Floats
     force: Floats
     held: Bools
     component: Ints
@@ -80,13 +82,14 @@ def rate_work(a: Assembly) -> Work:
     n_hinges = a.hinges.shape[0]
     return Work(
         np.empty(n_edges),
-        np.empty((n_edges, 3)),
+        columns(n_edges),
         np.empty((n_edges, 3)),
         np.empty(n_edges),
         np.empty(n_edges),
         np.empty(n_edges),
         np.empty(n_hinges),
         np.empty(n_hinges),
+        columns(n_edges),
         np.empty((n, 3)),
         np.empty(n, np.bool_),
         np.empty(a.closed.shape[0], np.int64),
@@ -113,8 +116,8 @@ def forces(
     """
     length, tangent, twist, force, torque = w.length, w.tangent, w.change, w.force, w.torque
     external, moment = bc.force, bc.torque
-    edge_geometry(x, a.edges, length, tangent)
-    reference_twist_change(base_tangent, tangent, a.hinges, twist)
+    edge_geometry(a, x, length, tangent)
+    reference_twist_change(a, base_tangent, tangent, twist)
     for k in range(twist.shape[0]):
         twist[k] += base_twist[k]
     hinge_twist(theta, twist, a.hinges, w.m)
@@ -123,7 +126,7 @@ def forces(
             force[i, c] = external[i, c]
     for e in range(torque.shape[0]):
         torque[e] = moment[e]
-    add_elastic_forces(a, m.EA, m.B, m.C, m.bend_present, length, tangent, w.m, force, torque)
+    add_elastic_forces(a, m.EA, m.B, m.C, m.bend_present, length, tangent, w.m, w.edge_force, force, torque)
     edge_midpoints(x, a.edges, w.mid)
     find_contacts(m, w.mid, contacts)
     add_contact_forces(a, m, length, tangent, contacts, force)
@@ -249,22 +252,21 @@ def rates(
     omega: Floats,
     angular: Floats,
     w: Work,
-) -> tuple[int, Factor | tuple[()]]:
+) -> int:
     """Velocities v (n_nodes, 3), spins omega and rates of the material angles angular (n_edges,).
 
     v holds the starting guess. The material angle is measured from a director transported straight
     from the base tangent t0, which itself turns about t by -(t0 x t) . dt/dt / (1 + t0 . t).
-    Returns OK, LOOSE (see hold_bodies), UNSOLVED or DENSE (solve without a factor), and the factor,
-    renewed when it did not serve.
+    Returns OK, LOOSE (see hold_bodies), UNSOLVED, or STALE when contacts were found that the factor does
+    not serve; then only forces and contacts are known.
     """
     forces(a, m, bc, x, theta, base_tangent, base_twist, contacts, w)
+    if not serves(factor, contacts):
+        return STALE
     find_drag(a, m, x, w.length, w.mid, contacts)
     if hold_bodies(a, bc, contacts, w.held, w.component) != OK:
-        return LOOSE, factor
+        return LOOSE
     _ground_guess(a, bc, v, w.held, w.component)
-    factor = renewed(factor, a, contacts, w.mid, m.diameter)
-    if not usable(factor):
-        return DENSE, factor
     for k in range(MOST_ROUNDS):
         change = weigh_skin(a, m, bc.skin, v)
         if k > 0 and change < SETTLED:
@@ -272,7 +274,7 @@ def rates(
         if not solve_mobility(
             a, m.eta_A, contacts, factor, bc.skin, w.force, w.held, tolerance, v, w.mobility
         ):
-            return UNSOLVED, factor
+            return UNSOLVED
     _centre_floating(a, bc, v, w.held, w.component)
     torque, drag_torque, spin_weight = w.torque, w.drag_torque, w.spin_weight
     for e in range(omega.shape[0]):
@@ -284,24 +286,38 @@ def rates(
     for e in range(omega.shape[0]):
         angular[e] = torque[e] + drag_torque[e]
     solve_spin(a, m.eta_J, w.tangent, angular, spin_weight, bc.turned, bc.spin, omega, w.spin)
-    _material_rate(a.edges, base_tangent, w.tangent, w.length, v, omega, angular)
-    return OK, factor
+    _material_rates(a, base_tangent, w.tangent, w.length, v, omega, angular)
+    return OK
+
+
+def _material_rates(
+    a: Assembly, t0: Floats, t: Floats, length: Floats, v: Floats, omega: Floats, angular: Floats
+) -> None:
+    """Rates of the material angles: spins, corrected for the turning of the reference directors."""
+    node_start, edge_start = a.node_start, a.edge_start
+    for f in range(edge_start.shape[0] - 1):
+        node, edge = node_start[f], edge_start[f]
+        n = node_start[f + 1] - node
+        for k in range(n - 1):
+            e, i = np.uintp(edge + k), np.uintp(node + k)
+            angular[e] = _material_rate(t0, t, length, v, omega, e, i, i + ONE)
+        if edge_start[f + 1] - edge == n:
+            last = edge + n - 1
+            angular[last] = _material_rate(t0, t, length, v, omega, last, node + n - 1, node)
 
 
 def _material_rate(
-    edges: Ints, t0: Floats, t: Floats, length: Floats, v: Floats, omega: Floats, angular: Floats
-) -> None:
-    """Rate of the material angle: the spin, corrected for the turning of the reference director."""
-    for e in range(omega.shape[0]):
-        i = edges[e, 0]
-        j = edges[e, 1]
-        triple = (
-            (t0[e, 1] * t[e, 2] - t0[e, 2] * t[e, 1]) * (v[j, 0] - v[i, 0])
-            + (t0[e, 2] * t[e, 0] - t0[e, 0] * t[e, 2]) * (v[j, 1] - v[i, 1])
-            + (t0[e, 0] * t[e, 1] - t0[e, 1] * t[e, 0]) * (v[j, 2] - v[i, 2])
-        )
-        cosine = t0[e, 0] * t[e, 0] + t0[e, 1] * t[e, 1] + t0[e, 2] * t[e, 2]
-        angular[e] = omega[e] + triple / (length[e] * (1.0 + cosine))
+    t0: Floats, t: Floats, length: Floats, v: Floats, omega: Floats, e: Index, i: Index, j: Index
+) -> float:
+    """Rate of the material angle of edge e from node i to node j."""
+    triple = (
+        (t0[e, 1] * t[e, 2] - t0[e, 2] * t[e, 1]) * (v[j, 0] - v[i, 0])
+        + (t0[e, 2] * t[e, 0] - t0[e, 0] * t[e, 2]) * (v[j, 1] - v[i, 1])
+        + (t0[e, 0] * t[e, 1] - t0[e, 1] * t[e, 0]) * (v[j, 2] - v[i, 2])
+    )
+    cosine = t0[e, 0] * t[e, 0] + t0[e, 1] * t[e, 1] + t0[e, 2] * t[e, 2]
+    rate: float = omega[e] + triple / (length[e] * (1.0 + cosine))
+    return rate
 
 
 def powers(
@@ -319,24 +335,26 @@ def powers(
     dissipated = 0.0
     moved = False
     for i in range(v.shape[0]):
-        for c in range(3):
-            external += v[i, c] * pull[i, c]
-            dissipated += 0.0 if held[i] else v[i, c] * force[i, c]
-            moved = moved or (held[i] and v[i, c] != 0.0)
+        vx, vy, vz = v[i, 0], v[i, 1], v[i, 2]
+        external += vx * pull[i, 0] + vy * pull[i, 1] + vz * pull[i, 2]
+        if held[i]:
+            moved = moved or vx != 0.0 or vy != 0.0 or vz != 0.0
+        else:
+            dissipated += vx * force[i, 0] + vy * force[i, 1] + vz * force[i, 2]
     spun = False
     for e in range(omega.shape[0]):
         external += omega[e] * moment[e]
-        dissipated += 0.0 if turned[e] else omega[e] * torque[e]
-        spun = spun or (turned[e] and omega[e] != 0.0)
+        if turned[e]:
+            spun = spun or omega[e] != 0.0
+        else:
+            dissipated += omega[e] * torque[e]
     if moved:
-        drag = w.mobility.q
-        apply_drag(a, m.eta_A, contacts, v, drag)
-        add_skin_drag(a, bc.skin, v, drag)
+        lost = power_of_drag(a, m.eta_A, contacts, v, held) + power_of_skin(a, bc.skin, v, held)
+        dissipated += lost
+        external += lost
         for i in range(v.shape[0]):
-            for c in range(3):
-                lost = v[i, c] * drag[i, c] if held[i] else 0.0
-                dissipated += lost
-                external += lost - v[i, c] * force[i, c] if held[i] else 0.0
+            if held[i]:
+                external -= v[i, 0] * force[i, 0] + v[i, 1] * force[i, 1] + v[i, 2] * force[i, 2]
     if spun:
         lost = _turning_power(a, m.eta_J, omega, turned, w)
         dissipated += lost
@@ -371,4 +389,4 @@ def energies(a: Assembly, m: Model, contacts: Contacts, w: Work, out: Floats) ->
     out[3] = contact_energy(a, m, w.length, w.tangent, contacts)
 
 
-compile_kernels(__name__, splice=("rates",), owning=("rates",), plain=("rate_work",))
+compile_kernels(__name__, inline=("_material_rate",), splice=("rates",), plain=("rate_work",))

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from torsade._compile import compile_kernels
-from torsade.arrays import Floats, Index
+from torsade.arrays import Floats, Index, columns
 from torsade.assembly import Assembly, State
 from torsade.motion.ends import Boundary
 from torsade.motion.rates import OK, Work, powers, rate_work, rates
@@ -98,7 +98,7 @@ def stage_work(a: Assembly) -> Stages:
         np.empty((n, 3)),
         np.empty(n_edges),
         np.empty(n_edges),
-        np.empty((n_edges, 3)),
+        columns(n_edges),
         np.empty(n_edges),
         np.empty((n_edges, 3)),
         np.empty((n, 3)),
@@ -110,11 +110,14 @@ def stage_work(a: Assembly) -> Stages:
     )
 
 
+def flat(x: Floats) -> Floats:
+    """All numbers of an array (n, 3) in a row, not copied."""
+    return x.reshape(x.size)
+
+
 def copy(source: Floats, out: Floats) -> None:
     """out = source, arrays (n, 3)."""
-    for i in range(out.shape[0]):
-        for c in range(3):
-            out[i, c] = source[i, c]
+    copy_flat(flat(source), flat(out))
 
 
 def copy_flat(source: Floats, out: Floats) -> None:
@@ -180,16 +183,15 @@ def chebyshev_table(stages: Index, dt: float, table: Floats) -> None:
 def _next_stage(weights: Floats, state: State, g: Stages) -> None:
     """Make (g.x, g.theta) the next stage, and the one before it (g.x1, g.theta1)."""
     c0, c1, c2, cv, cv0 = weights[0], weights[1], weights[2], weights[3], weights[4]
-    x0, x, x1, x2, v, v0 = state.x, g.x, g.x1, g.x2, g.v, g.v0
+    x0, x, x1, x2, v, v0 = flat(state.x), flat(g.x), flat(g.x1), flat(g.x2), flat(g.v), flat(g.v0)
+    copy_flat(x1, x2)
+    copy_flat(x, x1)
     for i in range(x.shape[0]):
-        for c in range(3):
-            x2[i, c] = x1[i, c]
-            x1[i, c] = x[i, c]
-            x[i, c] = c0 * x0[i, c] + c1 * x1[i, c] + c2 * x2[i, c] + cv * v[i, c] + cv0 * v0[i, c]
+        x[i] = c0 * x0[i] + c1 * x1[i] + c2 * x2[i] + cv * v[i] + cv0 * v0[i]
     p0, p, p1, p2, r, r0 = state.theta, g.theta, g.theta1, g.theta2, g.angular, g.angular0
+    copy_flat(p1, p2)
+    copy_flat(p, p1)
     for e in range(p.shape[0]):
-        p2[e] = p1[e]
-        p1[e] = p[e]
         p[e] = c0 * p0[e] + c1 * p1[e] + c2 * p2[e] + cv * r[e] + cv0 * r0[e]
 
 
@@ -252,7 +254,7 @@ def _response(radius: float, factor: float, g: Stages) -> float:
     return _size(mode_x, mode_theta) / (before * factor)
 
 
-def _prepare(job: Index, state: State, g: Stages) -> None:
+def _prepare(job: Index, dt: float, stages: Index, state: State, g: Stages) -> None:
     """Set up the running stages of a job."""
     if job == START:
         copy(state.v, g.v)
@@ -266,10 +268,17 @@ def _prepare(job: Index, state: State, g: Stages) -> None:
     if job == SPECTRUM:
         _seed_mode(g.x2, g.theta2)
         g.estimate[0] = 0.0
+    if job == STEP:
+        chebyshev_table(stages, dt, g.table)
+        for c in range(2):
+            g.ledger[0, c] = 0.0
+            g.ledger[1, c] = 0.0
+            g.ledger[3, c] = g.ledger[4, c]
 
 
 def evaluate(
     job: Index,
+    resumed: bool,
     a: Assembly,
     m: Model,
     bc: Boundary,
@@ -280,48 +289,44 @@ def evaluate(
     dt: float,
     stages: Index,
     g: Stages,
-) -> tuple[int, Factor | tuple[()]]:
-    """Evaluate the rates as often as a job needs, into g; returns their status and the newest factor.
+) -> int:
+    """Evaluate the rates as often as a job needs, into g; returns their status.
 
     START: at the present state. STEP: at every stage of a step dt [s] (one stage: explicit Euler); the
     last stage, in g.x and g.theta, is the result. SPECTRUM: at small displacements, to estimate the
     spectral radius by power iteration, always from the same direction; stretch waves of every length
-    decay at E/eta, so few iterations find it.
+    decay at E/eta, so few iterations find it. Resumed after the status STALE, a job goes on where it was.
     """
-    _prepare(job, state, g)
-    if job == STEP:
-        chebyshev_table(stages, dt, g.table)
-        for c in range(2):
-            g.ledger[0, c] = 0.0
-            g.ledger[1, c] = 0.0
-            g.ledger[3, c] = g.ledger[4, c]
+    first = int(g.estimate[1]) - 1 if resumed else 0
+    if not resumed:
+        _prepare(job, dt, stages, state, g)
     most = stages if job == STEP else (12 if job == SPECTRUM else 1)
     x, theta, v, omega, angular = g.x, g.theta, g.v, g.omega, g.angular
     tangent, ledger, estimate, work = g.tangent, g.ledger, g.estimate, g.work
     twist = state.reference_twist
-    for k in range(most):
+    for k in range(first, most):
         displaced = 0.0
-        if job == STEP:
+        if job == STEP and (k > first or not resumed):
             _next_stage(g.table[k + 1], state, g)
             _next_entry(g.table[k + 1], ledger)
         elif job == SPECTRUM:
             displaced = _perturb(state, control.radius, g)
             copy(g.v0, v)
-        status, factor = rates(
+        status = rates(
             a, m, bc, x, theta, tangent, twist, contacts, factor, control.solver_tolerance,
             v, omega, angular, work,
         )  # fmt: skip
         estimate[1] = k + 1.0
         if status != OK:
-            return status, factor
+            return status
         if job == SPECTRUM:
             previous = estimate[0]
             estimate[0] = _response(control.radius, displaced, g)
             if k > 1 and abs(estimate[0] - previous) < 0.05 * estimate[0]:
-                return OK, factor
+                return OK
         else:
             ledger[3, 0], ledger[3, 1] = powers(a, m, bc, v, omega, contacts, work)
-    return OK, factor
+    return OK
 
 
 def embedded_error(state: State, g: Stages, dt: float, radius: float) -> float:
@@ -344,6 +349,4 @@ def embedded_error(state: State, g: Stages, dt: float, radius: float) -> float:
     return largest
 
 
-compile_kernels(
-    __name__, inline=("copy", "copy_flat", "_set_row"), splice=("evaluate",), plain=("stage_work",)
-)
+compile_kernels(__name__, inline=("copy", "copy_flat", "_set_row"), splice=("flat",), plain=("stage_work",))

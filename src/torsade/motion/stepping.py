@@ -11,7 +11,7 @@ from torsade.motion.ends import Boundary
 from torsade.motion.guard import largest_move
 from torsade.motion.near import Near, crossing, find_near, list_near
 from torsade.motion.piercing import pierced
-from torsade.motion.rates import DENSE, LOOSE, OK
+from torsade.motion.rates import DENSE, LOOSE, OK, STALE
 from torsade.motion.scheme import (
     ONE_STAGE,
     SPECTRUM,
@@ -26,7 +26,7 @@ from torsade.motion.scheme import (
     stages_for,
 )
 from torsade.rod.contact import Model
-from torsade.rod.factor import Factor
+from torsade.rod.factor import Factor, renewed, usable
 from torsade.rod.kinematics import carry_directors, edge_geometry, spread_directors
 from torsade.rod.neighbours import edge_midpoints
 
@@ -63,7 +63,7 @@ def _commit(a: Assembly, state: State, g: Stages, now: float, clock: Clock) -> N
     clock.count[4] += 1
     carry_directors(a.edge_start, state.director, g.tangent, g.work.tangent)
     copy_flat(g.work.change, state.reference_twist)
-    copy(g.work.tangent, g.tangent)
+    copy(g.work.tangent.T, g.tangent.T)
     copy_flat(g.work.length, g.length)
     copy(g.work.mid, g.mid)
     copy(g.x, state.x)
@@ -183,7 +183,7 @@ def advance(
     (strands would pass through each other), STUCK (no step is short enough), UNSOLVABLE, CROWDED (contacts
     couple so much that solving without a factor is faster). The factor is one not made yet, or ().
     """
-    edge_geometry(state.x, a.edges, g.length, g.tangent)
+    edge_geometry(a, state.x, g.length, g.tangent)
     edge_midpoints(state.x, a.edges, g.mid)
     if until <= clock.time[0]:
         return REACHED
@@ -206,7 +206,13 @@ def advance(
         if job == STEP:
             tried, last = _next_step(control, clock, until)
             stages, dt = stages_for(tried, clock.time[4]) if adaptive else (ONE_STAGE, tried)
-        status, factor = evaluate(job, a, m, bc, state, near.contacts, factor, control, dt, stages, g)
+        status, resumed = STALE, False
+        while status == STALE:
+            status = evaluate(job, resumed, a, m, bc, state, near.contacts, factor, control, dt, stages, g)
+            resumed = status == STALE
+            if resumed:
+                factor = renewed(factor, a, near.contacts, g.work.mid, m.diameter)
+                status = STALE if usable(factor) else DENSE
         clock.count[2] += int(g.estimate[1])
         if status == DENSE or (job == START and status != OK):
             verdict = _verdict(status)

@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from torsade._compile import compile_kernels
-from torsade.arrays import Bools, Floats, Ints
+from torsade.arrays import Bools, Floats, Ints, columns
 from torsade.assembly import Assembly, State
 from torsade.motion.ends import Boundary
 from torsade.rod.constraint import add_impulses, factor_constraint, project_positions, project_velocities
@@ -76,6 +76,7 @@ class Work(NamedTuple):
     p : (n_edges,) scratch of the projection
     pull : (n_edges,) impulses of a step times its length [kg m]
     new_tangent, change, m : of the step: tangents, changes of reference twist, twists of hinges
+    edge_force : (n_edges, 3) elastic forces in the edges [N]
     """
 
     w: Floats
@@ -90,6 +91,7 @@ class Work(NamedTuple):
     new_tangent: Floats
     change: Floats
     m: Floats
+    edge_force: Floats
 
 
 class Clock(NamedTuple):
@@ -106,15 +108,16 @@ def verlet_work(a: Assembly) -> Work:
         w=np.zeros(n),
         force=np.zeros((n, 3)),
         torque=np.zeros(n_edges),
-        tangent=np.zeros((n_edges, 3)),
+        tangent=columns(n_edges),
         length=np.zeros(n_edges),
         below=np.zeros(n_edges),
         inverse=np.zeros(n_edges),
         p=np.zeros(n_edges),
         pull=np.zeros(n_edges),
-        new_tangent=np.zeros((n_edges, 3)),
+        new_tangent=columns(n_edges),
         change=np.zeros(n_hinges),
         m=np.zeros(n_hinges),
+        edge_force=columns(n_edges),
     )
 
 
@@ -127,7 +130,7 @@ def _forces(a: Assembly, rod: Rod, bc: Boundary, state: State, g: Work, tangent:
             force[i, c] = bc.force[i, c]
     for e in range(torque.shape[0]):
         torque[e] = bc.torque[e]
-    add_elastic_forces(a, 0.0, rod.B, rod.C, False, g.length, tangent, g.m, force, torque)
+    add_elastic_forces(a, 0.0, rod.B, rod.C, False, g.length, tangent, g.m, g.edge_force, force, torque)
 
 
 def _damp(inertia: Inertia, turned: Bools, omega: Floats, clock: Clock) -> None:
@@ -169,8 +172,8 @@ def _drift(a: Assembly, rod: Rod, state: State, g: Work) -> int:
 
 def _turn_frames(a: Assembly, state: State, g: Work) -> None:
     """Carry frames along with the tangents of the new positions."""
-    edge_geometry(state.x, a.edges, g.length, g.new_tangent)
-    reference_twist_change(g.tangent, g.new_tangent, a.hinges, g.change)
+    edge_geometry(a, state.x, g.length, g.new_tangent)
+    reference_twist_change(a, g.tangent, g.new_tangent, g.change)
     for k in range(g.change.shape[0]):
         state.reference_twist[k] += g.change[k]
     carry_directors(a.edge_start, state.director, g.tangent, g.new_tangent)
@@ -189,7 +192,7 @@ def begin(a: Assembly, rod: Rod, inertia: Inertia, bc: Boundary, state: State, g
     for e in range(state.omega.shape[0]):
         if bc.turned[e]:
             state.omega[e] = bc.spin[e]
-    edge_geometry(state.x, a.edges, g.length, g.tangent)
+    edge_geometry(a, state.x, g.length, g.tangent)
     _forces(a, rod, bc, state, g, g.tangent)
     factor_constraint(a, g.w, g.tangent, g.below, g.inverse)
     project_velocities(a, g.w, g.tangent, g.below, g.inverse, state.v, g.p)
@@ -243,7 +246,7 @@ def finish(a: Assembly, state: State, g: Work) -> None:
 
 def energies(a: Assembly, rod: Rod, inertia: Inertia, state: State, g: Work, out: Floats) -> None:
     """Kinetic energy of nodes and of spins, bending and twist energy [J], into out (4,)."""
-    edge_geometry(state.x, a.edges, g.length, g.new_tangent)
+    edge_geometry(a, state.x, g.length, g.new_tangent)
     hinge_twist(state.theta, state.reference_twist, a.hinges, g.m)
     out[0] = 0.0
     for i in range(state.v.shape[0]):

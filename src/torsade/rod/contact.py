@@ -105,9 +105,9 @@ def find_contacts(m: Model, mid: Floats, contacts: Contacts) -> None:
     reach = m.diameter * m.diameter
     count = 0
     for n in range(contacts.count[2]):
-        k = listed[n]
-        e = pairs[k, 0]
-        f = pairs[k, 1]
+        k = np.uintp(listed[n])
+        e = np.uintp(pairs[k, 0])
+        f = np.uintp(pairs[k, 1])
         dx = mid[f, 0] - mid[e, 0]
         dy = mid[f, 1] - mid[e, 1]
         dz = mid[f, 2] - mid[e, 2]
@@ -160,14 +160,14 @@ def add_contact_forces(
     nodes, rest_length = a.edges, a.rest_length
     edges, direction, distance = contacts.edges, contacts.direction, contacts.distance
     for k in range(contacts.count[0]):
-        e = edges[k, 0]
-        f = edges[k, 1]
+        e = np.uintp(edges[k, 0])
+        f = np.uintp(edges[k, 1])
         area = _area(m.projected, e, f, rest_length, length, tangent)
         half = 0.5 * area * contact_pressure(m, distance[k])
-        e0 = nodes[e, 0]
-        e1 = nodes[e, 1]
-        f0 = nodes[f, 0]
-        f1 = nodes[f, 1]
+        e0 = np.uintp(nodes[e, 0])
+        e1 = np.uintp(nodes[e, 1])
+        f0 = np.uintp(nodes[f, 0])
+        f1 = np.uintp(nodes[f, 1])
         for c in range(3):
             push = half * direction[k, c]
             force[e0, c] -= push
@@ -235,14 +235,14 @@ def find_drag(a: Assembly, m: Model, x: Floats, length: Floats, mid: Floats, con
         _find_node_pairs(a, m, x, length, mid, contacts)
         return
     for k in range(contacts.count[0]):
-        e = edges[k, 0]
-        f = edges[k, 1]
-        R = distance[k]
+        e = np.uintp(edges[k, 0])
+        f = np.uintp(edges[k, 1])
+        s = 1.0 / distance[k]
         drag_nodes[k, 0] = nodes[e, 0]
         drag_nodes[k, 1] = nodes[e, 1]
         drag_nodes[k, 2] = nodes[f, 0]
         drag_nodes[k, 3] = nodes[f, 1]
-        drag_weight[k] = m.eta_f_A * rest_length[e] * rest_length[f] / (R * R * R)
+        drag_weight[k] = m.eta_f_A * rest_length[e] * rest_length[f] * (s * s * s)
         drag_contact[k] = k
     contacts.count[1] = contacts.count[0]
 
@@ -259,24 +259,24 @@ def add_drag_torques(
     nodes, rest_length = a.edges, a.rest_length
     edges, direction, distance = contacts.edges, contacts.direction, contacts.distance
     for k in range(contacts.count[0]):
-        e = edges[k, 0]
-        f = edges[k, 1]
-        R = distance[k]
+        e = np.uintp(edges[k, 0])
+        f = np.uintp(edges[k, 1])
+        s = 1.0 / distance[k]
         rx, ry, rz = direction[k, 0], direction[k, 1], direction[k, 2]
-        e0 = nodes[e, 0]
-        e1 = nodes[e, 1]
-        f0 = nodes[f, 0]
-        f1 = nodes[f, 1]
+        e0 = np.uintp(nodes[e, 0])
+        e1 = np.uintp(nodes[e, 1])
+        f0 = np.uintp(nodes[f, 0])
+        f1 = np.uintp(nodes[f, 1])
         dx = 0.5 * (v[f0, 0] + v[f1, 0] - v[e0, 0] - v[e1, 0])
         dy = 0.5 * (v[f0, 1] + v[f1, 1] - v[e0, 1] - v[e1, 1])
         dz = 0.5 * (v[f0, 2] + v[f1, 2] - v[e0, 2] - v[e1, 2])
-        sx = (ry * dz - rz * dy) / R
-        sy = (rz * dx - rx * dz) / R
-        sz = (rx * dy - ry * dx) / R
-        we = m.eta_f_J * rest_length[e] / (R * R)
-        wf = m.eta_f_J * rest_length[f] / (R * R)
+        sx = (ry * dz - rz * dy) * s
+        sy = (rz * dx - rx * dz) * s
+        sz = (rx * dy - ry * dx) * s
+        we = m.eta_f_J * rest_length[e] * (s * s)
+        wf = m.eta_f_J * rest_length[f] * (s * s)
         if not m.node_pair:
-            we *= rest_length[f] / R
+            we *= rest_length[f] * s
             wf = we
         torque[e] += we * (sx * tangent[e, 0] + sy * tangent[e, 1] + sz * tangent[e, 2])
         torque[f] += wf * (sx * tangent[f, 0] + sy * tangent[f, 1] + sz * tangent[f, 2])

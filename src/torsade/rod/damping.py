@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numpy as np
 
 from torsade._compile import compile_kernels
-from torsade.arrays import Bools, Floats, Index
+from torsade.arrays import ONE, Bools, Floats, Index
 from torsade.assembly import Assembly
 from torsade.rod.contact import Contacts
-from torsade.rod.factor import HELD, Factor, assemble, factorise, substitute
+from torsade.rod.factor import HELD, Factor, assemble, eliminate, substitute
 from torsade.rod.skin import Skin, add_skin_diagonal, add_skin_drag, add_skin_entries, couple_skin
 
 
@@ -75,6 +75,33 @@ def apply_drag(a: Assembly, eta_A: float, contacts: Contacts, v: Floats, out: Fl
             out[i1, c] += f
             out[j0, c] -= f
             out[j1, c] -= f
+
+
+def power_of_drag(a: Assembly, eta_A: float, contacts: Contacts, v: Floats, chosen: Bools) -> float:
+    """Power [W] that chosen nodes (n_nodes,) spend on drag at velocities v (n_nodes, 3): their v . M v."""
+    edges, rest_length = a.edges, a.rest_length
+    nodes, weight = contacts.drag_nodes, contacts.drag_weight
+    power = 0.0
+    for e in range(edges.shape[0]):
+        i = np.uintp(edges[e, 0])
+        j = np.uintp(edges[e, 1])
+        if chosen[i] or chosen[j]:
+            w = eta_A / rest_length[e]
+            for c in range(3):
+                own = (v[i, c] if chosen[i] else 0.0) - (v[j, c] if chosen[j] else 0.0)
+                power += w * (v[i, c] - v[j, c]) * own
+    for k in range(contacts.count[1]):
+        i0 = np.uintp(nodes[k, 0])
+        i1 = np.uintp(nodes[k, 1])
+        j0 = np.uintp(nodes[k, 2])
+        j1 = np.uintp(nodes[k, 3])
+        if chosen[i0] or chosen[i1] or chosen[j0] or chosen[j1]:
+            w = 0.25 * weight[k]
+            for c in range(3):
+                own = (v[i0, c] if chosen[i0] else 0.0) + (v[i1, c] if chosen[i1] else 0.0)
+                own -= (v[j0, c] if chosen[j0] else 0.0) + (v[j1, c] if chosen[j1] else 0.0)
+                power += w * (v[i0, c] + v[i1, c] - v[j0, c] - v[j1, c]) * own
+    return power
 
 
 def _tridiagonal_part(a: Assembly, eta_A: float, contacts: Contacts, work: MobilityWork) -> None:
@@ -180,11 +207,14 @@ def solve_mobility(
     add_skin_entries(a, skin, factor)
     diagonal, prescribed = factor.diagonal, work.r
     for i in range(v.shape[0]):
-        d = diagonal[i]
         for c in range(3):
             prescribed[i, c] = v[i, c]
-            v[i, c] = d * v[i, c] if fixed[i] else force[i, c]
-    if not factorise(factor):
+            v[i, c] = force[i, c]
+    for i in range(v.shape[0]):
+        if fixed[i]:
+            for c in range(3):
+                v[i, c] = diagonal[i] * prescribed[i, c]
+    if not eliminate(factor, v):
         return False
     substitute(factor, v)
     couple_skin(a, skin, factor, force, fixed, v)
@@ -282,20 +312,9 @@ def solve_spin(
     omega_e, equals the torque (thesis 4.11). Edges with fixed (n_edges,) turn as prescribed. A fiber
     that nothing holds may spin as a whole; a term of 1e-12 of the damping picks the spin at rest.
     """
-    hinges, hinge_length = a.hinges, a.hinge_length
     edge_start, hinge_start = a.edge_start, a.hinge_start
     diagonal, upper = work.diagonal, work.upper
-    for e in range(omega.shape[0]):
-        diagonal[e] = spin_weight[e]
-        upper[e] = 0.0
-    for k in range(hinges.shape[0]):
-        p = hinges[k, 0]
-        q = hinges[k, 1]
-        w = eta_J / hinge_length[k]
-        c = tangent[p, 0] * tangent[q, 0] + tangent[p, 1] * tangent[q, 1] + tangent[p, 2] * tangent[q, 2]
-        diagonal[p] += w * (1.0 + 1e-12)
-        diagonal[q] += w * (1.0 + 1e-12)
-        upper[p] -= w * c
+    _spin_matrix(a, eta_J, tangent, spin_weight, diagonal, upper)
     for e in range(omega.shape[0]):
         if fixed[e]:
             diagonal[e] = HELD * (diagonal[e] if diagonal[e] > 0.0 else 1.0)
@@ -308,14 +327,48 @@ def solve_spin(
         if last - first == hinge_start[f + 1] - hinge_start[f]:
             _solve_ring(first, last, diagonal, upper, work.factor, work.border, omega)
         else:
-            _factorise_chain(first, last, diagonal, upper, work.factor)
-            _solve_chain(first, last, upper, work.factor, omega)
+            _eliminate_chain(first, last, diagonal, upper, work.factor, omega)
+            _substitute_chain(first, last, upper, work.factor, omega)
     for e in range(omega.shape[0]):
         if fixed[e]:
             omega[e] = prescribed[e]
 
 
-def _factorise_chain(first: Index, last: Index, diagonal: Floats, upper: Floats, factor: Floats) -> None:
+def _spin_matrix(
+    a: Assembly, eta_J: float, t: Floats, spin_weight: Floats, diagonal: Floats, upper: Floats
+) -> None:
+    """Diagonal of the matrix of spins, and upper, which couples an edge to the one after it."""
+    edge_start, hinge_start, lbar = a.edge_start, a.hinge_start, a.hinge_length
+    for f in range(edge_start.shape[0] - 1):
+        first, n = edge_start[f], edge_start[f + 1] - edge_start[f]
+        if n == 0:
+            continue
+        joints = hinge_start[f + 1] - hinge_start[f]
+        after = hinge_start[f] + joints - n + 1
+        for k in range(n - 1):
+            e = np.uintp(first + k)
+            q = e + ONE
+            c = t[e, 0] * t[q, 0] + t[e, 1] * t[q, 1] + t[e, 2] * t[q, 2]
+            upper[e] = -eta_J / lbar[np.uintp(after + k)] * c
+        for k in range(1, n - 1):
+            e, h = np.uintp(first + k), np.uintp(after + k)
+            diagonal[e] = spin_weight[e] + (eta_J / lbar[h - ONE] + eta_J / lbar[h]) * (1.0 + 1e-12)
+        last = first + n - 1
+        diagonal[first], diagonal[last], upper[last] = spin_weight[first], spin_weight[last], 0.0
+        if n > 1:
+            diagonal[first] += eta_J / lbar[after] * (1.0 + 1e-12)
+            diagonal[last] += eta_J / lbar[after + n - 2] * (1.0 + 1e-12)
+        if joints == n:
+            w = eta_J / lbar[hinge_start[f]]
+            diagonal[first] += w * (1.0 + 1e-12)
+            diagonal[last] += w * (1.0 + 1e-12)
+            c = t[first, 0] * t[last, 0] + t[first, 1] * t[last, 1] + t[first, 2] * t[last, 2]
+            upper[last] = -w * c
+
+
+def _eliminate_chain(
+    first: Index, last: Index, diagonal: Floats, upper: Floats, factor: Floats, rhs: Floats
+) -> None:
     """Eliminate edges first..last-1 of a symmetric tridiagonal system from both ends towards the middle.
 
     Two recurrences that do not wait for each other take half the time of one.
@@ -326,17 +379,21 @@ def _factorise_chain(first: Index, last: Index, diagonal: Floats, upper: Floats,
     for s in range(middle - first):
         e = first + s
         factor[e] = 1.0 / (diagonal[e] - left)
-        left = upper[e] * upper[e] * factor[e]
+        share = upper[e] * factor[e]
+        left = upper[e] * share
+        rhs[e + 1] -= share * rhs[e]
         g = last - 1 - s
         if g > middle:
             factor[g] = 1.0 / (diagonal[g] - right)
-            right = upper[g - 1] * upper[g - 1] * factor[g]
+            share = upper[g - 1] * factor[g]
+            right = upper[g - 1] * share
+            rhs[g - 1] -= share * rhs[g]
     pivot = diagonal[middle] - left - right
     factor[middle] = 1.0 / pivot if pivot > 0.0 else 0.0
 
 
-def _solve_chain(first: Index, last: Index, upper: Floats, factor: Floats, rhs: Floats) -> None:
-    """Solve for edges first..last-1 in place, with factors of `_factorise_chain`."""
+def _carry_chain(first: Index, last: Index, upper: Floats, factor: Floats, rhs: Floats) -> None:
+    """Eliminate another right side, with factors of `_eliminate_chain`."""
     middle = (first + last) // 2
     for s in range(middle - first):
         e = first + s
@@ -344,6 +401,11 @@ def _solve_chain(first: Index, last: Index, upper: Floats, factor: Floats, rhs: 
         g = last - 1 - s
         if g > middle:
             rhs[g - 1] -= upper[g - 1] * factor[g] * rhs[g]
+
+
+def _substitute_chain(first: Index, last: Index, upper: Floats, factor: Floats, rhs: Floats) -> None:
+    """Replace what is left of a right side by the solution, from the middle to both ends."""
+    middle = (first + last) // 2
     rhs[middle] *= factor[middle]
     for s in range(middle - first - 1, -1, -1):
         e = first + s
@@ -367,13 +429,14 @@ def _solve_ring(
     gamma = -diagonal[first]
     diagonal[first] -= gamma
     diagonal[last - 1] -= seam * seam / gamma
-    _factorise_chain(first, last, diagonal, upper, factor)
-    _solve_chain(first, last, upper, factor, omega)
+    _eliminate_chain(first, last, diagonal, upper, factor, omega)
+    _substitute_chain(first, last, upper, factor, omega)
     for e in range(first, last):
         border[e] = 0.0
     border[first] = gamma
     border[last - 1] = seam
-    _solve_chain(first, last, upper, factor, border)
+    _carry_chain(first, last, upper, factor, border)
+    _substitute_chain(first, last, upper, factor, border)
     ratio = seam / gamma
     s = omega[first] + ratio * omega[last - 1]
     s /= 1.0 + border[first] + ratio * border[last - 1]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from torsade._compile import compile_kernels
-from torsade.arrays import Bools, Floats, Index, Ints, Slots
+from torsade.arrays import ONE, Bools, Floats, Index, Ints, Slots
 from torsade.assembly import Assembly
 from torsade.rod.contact import Contacts
 from torsade.rod.ordering import couplings, minimum_degree
@@ -39,6 +39,7 @@ class Factor(NamedTuple):
     elimination. tape are the slots that factorising updates, in turn. edge_slot (n_edges,) couples the
     nodes of an edge, pair_slot (n_pairs, 4) start and end of one edge with start and end of the other, for
     known (n_pairs,) pairs. value holds the entries below the diagonal; diagonal, inverse (n,) are by node.
+    inner and inner_diagonal are the entries of internal damping with eta A = 1, which never change [1/m].
     """
 
     kind: Ints
@@ -52,6 +53,8 @@ class Factor(NamedTuple):
     value: Floats
     diagonal: Floats
     inverse: Floats
+    inner: Floats
+    inner_diagonal: Floats
 
 
 def no_factor() -> Factor:
@@ -61,12 +64,14 @@ def no_factor() -> Factor:
     values = np.zeros(0)
     return Factor(
         np.zeros(1, np.int64), none, none, slots, slots, slots, np.zeros((0, 4), np.uint32),
-        np.zeros(0, np.bool_), values, values, values,
+        np.zeros(0, np.bool_), values, values, values, values, values,
     )  # fmt: skip
 
 
-def serves(factor: Factor, contacts: Contacts) -> bool:
-    """Whether the pattern holds all contacts found."""
+def serves(factor: Factor | tuple[()], contacts: Contacts) -> bool:
+    """Whether the pattern holds all contacts found; without a factor there is nothing to hold them."""
+    if len(factor) == 0:
+        return True
     if factor.kind[0] == UNMADE:
         return False
     known, row = factor.known, contacts.row
@@ -185,19 +190,24 @@ def pattern(a: Assembly, contacts: Contacts, mid: Floats, diameter: float, worth
     pair_slot = np.empty((contacts.pairs.shape[0], 4), np.uint32)
     if kind[0] == MADE:
         _place(a.edges, contacts.pairs, known, rank, start, row, edge_slot, pair_slot)
+    inner, inner_diagonal = np.zeros(row.shape[0]), np.zeros(n)
+    for e in range(edge_slot.shape[0]):
+        w = 1.0 / a.rest_length[e]
+        inner_diagonal[a.edges[e, 0]] += w
+        inner_diagonal[a.edges[e, 1]] += w
+        if kind[0] == MADE:
+            inner[edge_slot[e]] -= w
     return Factor(
         kind, order, start, row, _tape(start, row, rank), edge_slot, pair_slot, known,
-        np.empty(row.shape[0]), np.empty(n), np.empty(n),
+        np.empty(row.shape[0]), np.empty(n), np.empty(n), inner, inner_diagonal,
     )  # fmt: skip
 
 
 def renewed(
     factor: Factor | tuple[()], a: Assembly, contacts: Contacts, mid: Floats, diameter: float
 ) -> Factor | tuple[()]:
-    """The factor if it serves, else one for a new pattern; the empty tuple stays what it is."""
+    """A factor for a new pattern; the empty tuple stays what it is."""
     if len(factor) == 0:
-        return factor
-    if serves(factor, contacts):
         return factor
     return pattern(a, contacts, mid, diameter, WORTH)
 
@@ -213,25 +223,25 @@ def usable(factor: Factor | tuple[()]) -> bool:
 def assemble(a: Assembly, eta_A: float, contacts: Contacts, fixed: Bools, factor: Factor) -> None:
     """The mobility matrix of internal damping and collision drag, with fixed (n_nodes,) nodes held."""
     value, diagonal, edge_slot, pair_slot = factor.value, factor.diagonal, factor.edge_slot, factor.pair_slot
-    edges, rest_length, touching = a.edges, a.rest_length, contacts.edges
-    nodes, weight, coupled = contacts.drag_nodes, contacts.drag_weight, contacts.drag_contact
+    edges, touching, inner, inner_diagonal = a.edges, contacts.edges, factor.inner, factor.inner_diagonal
+    nodes, weight, coupled, rows = (
+        contacts.drag_nodes,
+        contacts.drag_weight,
+        contacts.drag_contact,
+        contacts.row,
+    )
     for i in range(diagonal.shape[0]):
-        diagonal[i] = 0.0
+        diagonal[i] = eta_A * inner_diagonal[i]
     for s in range(value.shape[0]):
-        value[s] = 0.0
-    for e in range(edges.shape[0]):
-        w = eta_A / rest_length[e]
-        diagonal[edges[e, 0]] += w
-        diagonal[edges[e, 1]] += w
-        value[edge_slot[e]] -= w
+        value[s] = eta_A * inner[s]
     for k in range(contacts.count[1]):
-        i0 = nodes[k, 0]
-        i1 = nodes[k, 1]
-        j0 = nodes[k, 2]
-        j1 = nodes[k, 3]
+        i0 = np.uintp(nodes[k, 0])
+        i1 = np.uintp(nodes[k, 1])
+        j0 = np.uintp(nodes[k, 2])
+        j1 = np.uintp(nodes[k, 3])
         w = 0.25 * weight[k]
-        contact = coupled[k]
-        slot = contacts.row[contact]
+        contact = np.uintp(coupled[k])
+        slot = np.uintp(rows[contact])
         if i0 == i1:
             end = 0 if i0 == edges[touching[contact, 0], 0] else 3
             diagonal[i0] += 4.0 * w
@@ -251,45 +261,59 @@ def assemble(a: Assembly, eta_A: float, contacts: Contacts, fixed: Bools, factor
             diagonal[i] *= HELD
 
 
-def factorise(factor: Factor) -> bool:
-    """L D L^T in place: value becomes L, inverse 1/D; False if the matrix is not positive definite."""
+def eliminate(factor: Factor, v: Floats) -> bool:
+    """L D L^T in place: value becomes L, inverse 1/D; and v (n_nodes, 3), the right side, L^-1 v.
+
+    False if the matrix is not positive definite.
+    """
     order, start, row, tape = factor.order, factor.start, factor.row, factor.tape
     value, diagonal, inverse = factor.value, factor.diagonal, factor.inverse
-    t = 0
+    t = np.uintp(0)
     for k in range(order.shape[0]):
-        d = diagonal[order[k]]
+        i = np.uintp(order[k])
+        end = np.uintp(start[k + 1])
+        d = diagonal[i]
         if not d > 0.0:
             return False
         s = 1.0 / d
-        inverse[order[k]] = s
-        for p in range(start[k], start[k + 1]):
+        inverse[i] = s
+        v0, v1, v2 = v[i, 0], v[i, 1], v[i, 2]
+        for p in range(np.uintp(start[k]), end):
+            j = row[p]
             l = value[p] * s
-            diagonal[row[p]] -= l * value[p]
-            for q in range(p + 1, start[k + 1]):
+            diagonal[j] -= l * value[p]
+            v[j, 0] -= l * v0
+            v[j, 1] -= l * v1
+            v[j, 2] -= l * v2
+            for q in range(p + ONE, end):
                 value[tape[t]] -= l * value[q]
-                t += 1
+                t += ONE
             value[p] = l
     return True
 
 
-def substitute(factor: Factor, v: Floats) -> None:
-    """Replace the right side v (n_nodes, 3) by the solution."""
-    order, start, row, value, inverse = factor.order, factor.start, factor.row, factor.value, factor.inverse
-    n = order.shape[0]
-    for k in range(n):
-        i = order[k]
+def carry(factor: Factor, v: Floats) -> None:
+    """Eliminate another right side v (n_nodes, 3) with the factors that `eliminate` made."""
+    order, start, row, value = factor.order, factor.start, factor.row, factor.value
+    for k in range(order.shape[0]):
+        i = np.uintp(order[k])
         v0, v1, v2 = v[i, 0], v[i, 1], v[i, 2]
-        for p in range(start[k], start[k + 1]):
+        for p in range(np.uintp(start[k]), np.uintp(start[k + 1])):
             j = row[p]
             l = value[p]
             v[j, 0] -= l * v0
             v[j, 1] -= l * v1
             v[j, 2] -= l * v2
-    for k in range(n - 1, -1, -1):
-        i = order[k]
+
+
+def substitute(factor: Factor, v: Floats) -> None:
+    """Replace what `eliminate` or `carry` left in v (n_nodes, 3) by the solution."""
+    order, start, row, value, inverse = factor.order, factor.start, factor.row, factor.value, factor.inverse
+    for k in range(order.shape[0] - 1, -1, -1):
+        i = np.uintp(order[k])
         s = inverse[i]
         v0, v1, v2 = s * v[i, 0], s * v[i, 1], s * v[i, 2]
-        for p in range(start[k], start[k + 1]):
+        for p in range(np.uintp(start[k]), np.uintp(start[k + 1])):
             j = row[p]
             l = value[p]
             v0 -= l * v[j, 0]

@@ -12,23 +12,34 @@ import math
 import numpy as np
 
 from torsade._compile import compile_kernels
-from torsade.arrays import Floats, Index, Ints
+from torsade.arrays import ONE, Floats, Index, Ints
+from torsade.assembly import Assembly
 
 
-def edge_geometry(x: Floats, edges: Ints, length: Floats, tangent: Floats) -> None:
+def edge_geometry(a: Assembly, x: Floats, length: Floats, tangent: Floats) -> None:
     """Length [m] (n_edges,) and unit tangent (n_edges, 3) of every edge of nodes x (n_nodes, 3)."""
-    for e in range(edges.shape[0]):
-        i = edges[e, 0]
-        j = edges[e, 1]
-        dx = x[j, 0] - x[i, 0]
-        dy = x[j, 1] - x[i, 1]
-        dz = x[j, 2] - x[i, 2]
-        r = math.sqrt(dx * dx + dy * dy + dz * dz)
-        length[e] = r
-        s = 1.0 / r
-        tangent[e, 0] = dx * s
-        tangent[e, 1] = dy * s
-        tangent[e, 2] = dz * s
+    node_start, edge_start = a.node_start, a.edge_start
+    for f in range(edge_start.shape[0] - 1):
+        node, edge = node_start[f], edge_start[f]
+        n = node_start[f + 1] - node
+        for k in range(n - 1):
+            i = np.uintp(node + k)
+            _measure_edge(x, i, i + ONE, np.uintp(edge + k), length, tangent)
+        if edge_start[f + 1] - edge == n:
+            _measure_edge(x, node + n - 1, node, edge + n - 1, length, tangent)
+
+
+def _measure_edge(x: Floats, i: Index, j: Index, e: Index, length: Floats, tangent: Floats) -> None:
+    """Length and tangent of edge e from node i to node j."""
+    dx = x[j, 0] - x[i, 0]
+    dy = x[j, 1] - x[i, 1]
+    dz = x[j, 2] - x[i, 2]
+    r = math.sqrt(dx * dx + dy * dy + dz * dz)
+    length[e] = r
+    s = 1.0 / r
+    tangent[e, 0] = dx * s
+    tangent[e, 1] = dy * s
+    tangent[e, 2] = dz * s
 
 
 def _half_solid_angle(p: Floats, i: Index, q: Floats, j: Index, r: Floats, k: Index) -> tuple[float, float]:
@@ -46,27 +57,41 @@ def _half_solid_angle(p: Floats, i: Index, q: Floats, j: Index, r: Floats, k: In
     return numerator, 1.0 + ab + bc + ca
 
 
-def small_atan(y: float, x: float) -> float:
-    """atan2(y, x); a series where |y/x| is so small that it is exact to round-off."""
-    if abs(y) < 0.02 * x:
-        q = y / x
-        s = q * q
-        return q * (1.0 - s * (1.0 / 3.0 - s * (0.2 - s * (1.0 / 7.0 - s * (1.0 / 9.0 - s / 11.0)))))
-    return math.atan2(y, x)
+def small_atan(q: float) -> float:
+    """atan q by a series that is exact to round-off up to q = 0.02."""
+    s = q * q
+    return q * (1.0 - s * (1.0 / 3.0 - s * (0.2 - s * (1.0 / 7.0 - s * (1.0 / 9.0 - s * (1.0 / 11.0))))))
 
 
-def reference_twist_change(tangent_0: Floats, tangent: Floats, hinges: Ints, change: Floats) -> None:
+def _swept(t0: Floats, t: Floats, a: Index, b: Index) -> tuple[float, float]:
+    """Numerator and denominator of the tangent of half the area swept between the edges a and b."""
+    y1, x1 = _half_solid_angle(t0, a, t0, b, t, b)
+    y2, x2 = _half_solid_angle(t0, a, t, b, t, a)
+    return x1 * y2 + y1 * x2, x1 * x2 - y1 * y2
+
+
+def reference_twist_change(a: Assembly, tangent_0: Floats, tangent: Floats, change: Floats) -> None:
     """Exact change of every hinge's reference twist as tangents move from tangent_0 to tangent.
 
     With both directors parallel transported in time, the change is the area on the unit sphere enclosed
     by the path t_a0, t_b0, t_b, t_a (holonomy). Arrays (n_edges, 3), change (n_hinges,) [rad].
     """
-    for k in range(hinges.shape[0]):
-        a = hinges[k, 0]
-        b = hinges[k, 1]
-        y1, x1 = _half_solid_angle(tangent_0, a, tangent_0, b, tangent, b)
-        y2, x2 = _half_solid_angle(tangent_0, a, tangent, b, tangent, a)
-        change[k] = 2.0 * small_atan(x1 * y2 + y1 * x2, x1 * x2 - y1 * y2)
+    edge_start, hinge_start, hinges = a.edge_start, a.hinge_start, a.hinges
+    for f in range(edge_start.shape[0] - 1):
+        edge = edge_start[f]
+        n = edge_start[f + 1] - edge
+        hinge = hinge_start[f + 1] - (n - 1)
+        for k in range(n - 1):
+            p = np.uintp(edge + k)
+            y, x = _swept(tangent_0, tangent, p, p + ONE)
+            small = 2.0 * small_atan(y / x)
+            change[np.uintp(hinge + k)] = small if abs(y) < 0.02 * x else math.nan
+        if n > 0 and hinge > hinge_start[f]:
+            change[hinge - 1] = math.nan
+    for k in range(change.shape[0]):
+        if change[k] != change[k]:
+            y, x = _swept(tangent_0, tangent, hinges[k, 0], hinges[k, 1])
+            change[k] = 2.0 * math.atan2(y, x)
 
 
 def transport(u: Floats, a: Floats, b: Floats, out: Floats) -> None:
@@ -124,5 +149,7 @@ def spread_directors(hinges: Ints, tangent: Floats, reference_twist: Floats, dir
 
 
 compile_kernels(
-    __name__, inline=("_half_solid_angle", "small_atan", "transport"), owning=("spread_directors",)
+    __name__,
+    inline=("_measure_edge", "_half_solid_angle", "_swept", "small_atan", "transport"),
+    owning=("spread_directors",),
 )

@@ -23,8 +23,8 @@ NEXT = np.int64(1)
 def edge_midpoints(x: Floats, edges: Ints, mid: Floats) -> None:
     """Midpoints (n_edges, 3) [m] of all edges."""
     for e in range(edges.shape[0]):
-        i = edges[e, 0]
-        j = edges[e, 1]
+        i = np.uintp(edges[e, 0])
+        j = np.uintp(edges[e, 1])
         for c in range(3):
             mid[e, c] = 0.5 * (x[i, c] + x[j, c])
 
@@ -139,8 +139,8 @@ def near_rows(pairs: Ints, mid: Floats, reach: float, rows: Ints) -> int:
     """
     count = 0
     for k in range(pairs.shape[0]):
-        e = pairs[k, 0]
-        f = pairs[k, 1]
+        e = np.uintp(pairs[k, 0])
+        f = np.uintp(pairs[k, 1])
         dx = mid[f, 0] - mid[e, 0]
         dy = mid[f, 1] - mid[e, 1]
         dz = mid[f, 2] - mid[e, 2]

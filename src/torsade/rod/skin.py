@@ -25,7 +25,7 @@ from torsade._compile import compile_kernels
 from torsade.arrays import Bools, Floats, Index, Ints
 from torsade.assembly import Assembly
 from torsade.rod.contact import Model, contact_pressure
-from torsade.rod.factor import Factor, substitute
+from torsade.rod.factor import Factor, carry, substitute
 
 MOST_CYLINDERS = 3
 """As many as a right side of the mobility solve has columns."""
@@ -216,6 +216,28 @@ def add_skin_drag(a: Assembly, skin: Skin | tuple[()], v: Floats, out: Floats) -
             out[c, k] -= f
 
 
+def power_of_skin(a: Assembly, skin: Skin | tuple[()], v: Floats, chosen: Bools) -> float:
+    """Power [W] that chosen nodes (n_nodes,) spend on the skin's drag at velocities v (n_nodes, 3)."""
+    power = 0.0
+    if len(skin) == 0:
+        return power
+    node, edges = skin.node, a.edges
+    edge, cylinder, weight = skin.edge, skin.cylinder, skin.weight
+    for c in range(node.shape[0]):
+        if chosen[node[c]]:
+            for k in range(3):
+                power += skin.ground * v[node[c], k] * v[node[c], k]
+    for n in range(skin.count[0]):
+        i = edges[edge[n], 0]
+        j = edges[edge[n], 1]
+        c = node[cylinder[n]]
+        for k in range(3):
+            own = 0.5 * ((v[i, k] if chosen[i] else 0.0) + (v[j, k] if chosen[j] else 0.0))
+            own -= v[c, k] if chosen[c] else 0.0
+            power += weight[n] * (0.5 * (v[i, k] + v[j, k]) - v[c, k]) * own
+    return power
+
+
 def add_skin_diagonal(a: Assembly, skin: Skin | tuple[()], diagonal: Floats, coupling: Floats) -> None:
     """Add the skin's part of M to its diagonal (n_nodes,) and to the coupling (n_edges,) along each edge."""
     if len(skin) == 0:
@@ -281,6 +303,7 @@ def couple_skin(
                 small[c, size + k] += 0.5 * weight[n] * v[i, k]
             if not fixed[i]:
                 column[i, c] += 0.5 * weight[n]
+    carry(factor, column)
     substitute(factor, column)
     for n in range(skin.count[0]):
         c = cylinder[n]

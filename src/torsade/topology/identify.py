@@ -21,6 +21,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import product
 
 import numpy as np
@@ -270,6 +271,12 @@ def identify_pd(pd: Sequence[Sequence[int]] | Code, circles: int = 0) -> Identit
     code = oriented(pd, circles)
     if not code.n_components:
         raise TorsadeError("the diagram is empty; give a PD code, or a number of circles")
+    return _identified(code)
+
+
+@lru_cache(maxsize=1024)
+def _identified(code: Code) -> Identity:
+    """Which knot or link a code is: curves that move, or are seen from many sides, have few of them."""
     pieces = [[_match(part) for part in piece] for piece in summands(code)]
     matches = [match for piece in pieces for match in piece]
     sums = [{sum_name(choice) for choice in product(*(match.names for match in piece))} for piece in pieces]
