@@ -325,12 +325,14 @@ def _unit(symbol: str) -> _Measure:
     known = [*_PLAIN, *_PREFIXED, *(p + u for p in _PREFIXES for u in _PREFIXED)]
     alike = [u for u in known if u.casefold() == symbol.casefold()]
     raise ValueError(
-        f"the unknown unit {symbol!r}" + (f" (did you mean {' or '.join(alike)}?)" * bool(alike))
+        f"the unknown unit {quoted(symbol, 20)}" + (f" (did you mean {' or '.join(alike)}?)" * bool(alike))
     )
 
 
 def _unreadable(part: str) -> ValueError:
-    return ValueError(f"a unit that cannot be read at {part!r}" if part else "a unit that ends too soon")
+    return ValueError(
+        f"a unit that cannot be read at {quoted(part, 20)}" if part else "a unit that ends too soon"
+    )
 
 
 def indefinite(name: str | None) -> str:

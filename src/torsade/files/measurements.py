@@ -21,6 +21,7 @@ from torsade.units import is_bearable, quantity
 
 __all__ = ["MOST_ROWS", "Column", "Row", "Table", "read_table"]
 
+MOST_COLUMNS = 500
 MOST_ROWS = 100_000
 """Most lines of a table."""
 
@@ -113,6 +114,8 @@ def read_table(path: Path, columns: Sequence[Column], kind: Kind) -> Table:
         if not separator:
             separator = max(SEPARATORS, key=line.count)
             texts = cells_of(line, separator, where)
+            if len(texts) > MOST_COLUMNS:
+                raise TorsadeError(f"{where} has {len(texts)} headings; give at most {MOST_COLUMNS}")
             headings = _headings(texts, columns, where)
             continue
         if len(rows) == MOST_ROWS:

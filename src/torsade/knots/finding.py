@@ -150,7 +150,7 @@ def known_bend(name: str) -> Entry:
         return entry
     advice = "choose one that torsade knots list --kind bend shows, such as zeppelin"
     if len(entry.diagram.ends) == 2:
-        advice = f"give torsade run tighten --knot {_word(name)}, or a bend such as zeppelin"
+        advice = f"give torsade run tighten --knot {_word(entry.name)}, or a bend such as zeppelin"
     raise TorsadeError(f"{quoted(name)} is {_what(entry)}, and a bend has two strands with ends; {advice}")
 
 
@@ -165,7 +165,7 @@ def known_strand(name: str) -> Entry:
         return entry
     advice = "choose one that torsade knots list --kind strand shows, such as overhand"
     if len(entry.diagram.ends) == 4:
-        advice = f"give torsade run prison-escape --knot {_word(name)}"
+        advice = f"give torsade run prison-escape --knot {_word(entry.name)}"
     elif entry.kind == "closed":
         advice = f"give 'open {entry.name}' for it cut open"
     raise TorsadeError(f"{quoted(name)} is {_what(entry)}, and one strand with two ends is wanted; {advice}")
