@@ -21,7 +21,6 @@ from torsade.motion.overdamped import Motion
 from torsade.motion.rates import _material_rates, hold_bodies, powers
 from torsade.motion.scheme import ONE_STAGE, START, embedded_error, evaluate
 from torsade.rod.contact import add_contact_forces, add_drag_torques, find_contacts, find_drag
-from torsade.rod.damping import solve_spin
 from torsade.rod.elasticity import add_elastic_forces, hinge_twist
 from torsade.rod.factor import WORTH, assemble, eliminate, pattern, substitute
 from torsade.rod.kinematics import (
@@ -30,6 +29,7 @@ from torsade.rod.kinematics import (
     reference_twist_change,
 )
 from torsade.rod.neighbours import edge_midpoints
+from torsade.rod.spin import solve_spin
 
 PAGE = Path(__file__).parents[1] / "docs" / "performance.md"
 

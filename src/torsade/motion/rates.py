@@ -19,15 +19,7 @@ from torsade.rod.contact import (
     find_contacts,
     find_drag,
 )
-from torsade.rod.damping import (
-    MobilityWork,
-    SpinWork,
-    mobility_work,
-    power_of_drag,
-    solve_mobility,
-    solve_spin,
-    spin_work,
-)
+from torsade.rod.damping import MobilityWork, mobility_work, power_of_drag, solve_mobility
 from torsade.rod.elasticity import (
     add_elastic_forces,
     bend_energy,
@@ -48,6 +40,7 @@ from torsade.rod.skin import (
     power_of_skin,
     weigh_skin,
 )
+from torsade.rod.spin import SpinWork, solve_spin, spin_work
 
 OK = 0
 LOOSE = 1
