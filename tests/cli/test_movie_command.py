@@ -63,7 +63,10 @@ def test_a_run_makes_its_movie(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
         (["movie", "a.zarr", "--size", "big"], "--size is 'big'; give two whole numbers such as 1280x720."),
         (["movie", "a.zarr", "--frames", "5"], "--frames is '5'; give two whole numbers such as 0:80."),
         (["movie", "a.zarr", "--fps", "-1"], "--fps is '-1'; give a number such as 30."),
-        (["movie", "a.zarr", "--colour", "heat"], "--colour is 'heat'; give one of strain, stress, strands."),
+        (
+            ["movie", "a.zarr", "--colour", "heat"],
+            "--colour is 'heat'; give one of strain, stress, energy, strands.",
+        ),
         (["movie", "a.zarr", "--out", "a.avi"], "'a.avi'; give a name that ends in .mp4 or .gif."),
         ([*RUN, "--movie", "no/where.mp4"], "cannot write 'no/where.mp4'"),
         (["run", "pendulum", "--movie", "a.mp4"], "pendulum has no fibers that move; give --plot in place"),

@@ -361,4 +361,4 @@ def test_plain_xarray_opens_every_result_without_torsade(
         )
         assert (done.returncode, done.stderr) == (0, "")
         mine = float(abs(ts.open(path).dataset).sum(skipna=True).to_array().sum())
-        assert float(done.stdout) == mine
+        assert float(done.stdout) == pytest.approx(mine, rel=1e-13)  # sums depend on how arrays lie in memory

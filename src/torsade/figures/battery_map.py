@@ -194,7 +194,7 @@ def _table(numbers: Mapping[str, NDArray[Any]]) -> Table:
 def _cell(value: Any) -> Cell:
     """A value of the catalogue as a cell: what is a list becomes text."""
     if isinstance(value, list):
-        return ", ".join(value)
+        return ", ".join(v if isinstance(v, str) else f"{v:g}" for v in value)
     plain: Cell = value.item() if isinstance(value, np.generic) else value
     return plain
 
