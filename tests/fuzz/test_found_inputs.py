@@ -44,6 +44,7 @@ FOUND = {
     "a crossing of many labels": ("codes", b"code\nX[" + b"A4," * 5000 + b"A5]"),
     "TOML nested without end": ("specs", b"toml\na = " + b"[" * 5000),
     "a unit of a hundred letters that are none": ("names", b"rate\n2 1/m1s" + b"\xff" * 90 + b"s"),
+    "mirrored, with letters that are two in lower case": ("names", ("name\nmirror m" + "İ" * 20).encode()),
     "a bend with a thousand hyphens": ("names", b"strand\nreef" + b"-" * 1000),
     "a hundred thousand headings": ("tables", b"trials\nlengths_mm" + b",eg" * 100_000),
     "TOML with a number of 5000 digits": ("specs", b"toml\nseed = " + b"9" * 5000),

@@ -66,7 +66,10 @@ def find(name: str) -> Entry:
             raise TorsadeError(
                 f"{quoted(text)} is mirrored more than once; give mirror once, or leave it out"
             )
-        return _mirrored(find(match[1] if match[1] in _known() else text[-len(match[1]) :]))
+        rest = match[1] if match[1] in _known() else text[-len(match[1]) :]
+        if len(rest) >= len(text):  # some letters are two in lower case
+            raise TorsadeError(_unknown(text))
+        return _mirrored(find(rest))
     found = _by_pattern(text)
     if found is None:
         raise TorsadeError(_unknown(text))
