@@ -45,6 +45,11 @@ FOUND = {
     "TOML nested without end": ("specs", b"toml\na = " + b"[" * 5000),
     "a unit of a hundred letters that are none": ("names", b"rate\n2 1/m1s" + b"\xff" * 90 + b"s"),
     "mirrored, with letters that are two in lower case": ("names", ("name\nmirror m" + "İ" * 20).encode()),
+    "a file beside the design with a name that is too long": (
+        "specs",
+        b'toml\nprotocol = "tighten"\ncenterline = "' + b"9" * 400 + b'"\n',
+    ),
+    "a circle between the vertices of a polyhedron": ("codes", b"code\n[8*-2:2 0:.0 0.0.0 0]"),
     "a bend with a thousand hyphens": ("names", b"strand\nreef" + b"-" * 1000),
     "a hundred thousand headings": ("tables", b"trials\nlengths_mm" + b",eg" * 100_000),
     "TOML with a number of 5000 digits": ("specs", b"toml\nseed = " + b"9" * 5000),

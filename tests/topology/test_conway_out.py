@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from math import gcd
 
 import pytest
@@ -137,3 +138,15 @@ def test_what_has_no_notation() -> None:
 def test_numbers_of_two_digits() -> None:
     for n in (11, -12):
         assert from_conway(to_conway(from_braid([1] * abs(n) if n > 0 else [-1] * -n))).n_crossings == abs(n)
+
+
+def test_circles_within_a_polyhedron_are_kept() -> None:
+    """With 1, -1 in place of 0, whose crossings cancel, every strand meets crossings and is counted with them."""
+    drawn = {"1": "1", "0": "(1,-1)", "0 0": "(1,-1) 0"}
+    circles = 0
+    for tangles in itertools.product(drawn, repeat=6):
+        plain = from_conway("6*" + ".".join(tangles))
+        crossed = from_conway("6*" + ".".join(drawn[t] for t in tangles))
+        assert len(plain.starts) == len(crossed.starts)
+        circles += plain.circles
+    assert circles > 200

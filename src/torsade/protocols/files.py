@@ -10,6 +10,7 @@ from __future__ import annotations
 import difflib
 import re
 import tomllib
+from contextlib import suppress
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -144,8 +145,15 @@ def check_protocol(protocol: object, where: str) -> type[Spec]:
 
 def beside(path: str | Path, centerline: Any) -> Any:
     """A file of nodes that a TOML file names: beside that, where it lies there."""
-    found = isinstance(centerline, str) and (Path(path).parent / centerline).is_file()
+    found = isinstance(centerline, str) and _is_file(Path(path).parent / centerline)
     return str(Path(path).parent / centerline) if found else centerline
+
+
+def _is_file(path: Path) -> bool:
+    """Whether there is one: a name that is too long, or holds what no name may, is that of none."""
+    with suppress(OSError, ValueError):
+        return path.is_file()
+    return False
 
 
 def merged(fields: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from typing import NamedTuple
 from torsade.errors import TorsadeError, quoted
 from torsade.topology.codes._limits import limited
 from torsade.topology.codes.braid import from_braid
-from torsade.topology.diagram import Diagram
+from torsade.topology.diagram import CIRCLE, Diagram
 from torsade.topology.tangle import integer, numerator, rational, rotated
 
 __all__ = ["from_conway", "numbers_are_apart"]
@@ -271,11 +271,25 @@ def _substituted(base: Diagram, tangles: Sequence[Diagram]) -> Diagram:
         for k in range(4):
             p, q = 4 * c + (k + 3 & 3), t.mate[k - 4]
             inside[p] = q + offsets[c] if q >= 0 else ~(4 * c + (q + 4 + 3 & 3))
+    passed: set[int] = set()
     for p, q in inside.items():
-        far = base.mate[p]
-        # Tangles such as 0 lead straight to another port of the base, and on from there.
-        while (r := inside[far]) < 0:
-            far = base.mate[~r]
         if q >= 0:
+            far = base.mate[p]
+            # Tangles such as 0 lead straight to another port of the base, and on from there.
+            while (r := inside[far]) < 0:
+                passed |= {far, ~r}
+                far = base.mate[~r]
             mate[q] = r
-    return Diagram.assemble(mate)
+    circles = _circles({p: base.mate[~q] for p, q in inside.items() if q < 0 and p not in passed})
+    return Diagram.assemble(mate, [CIRCLE] * circles)
+
+
+def _circles(onwards: dict[int, int]) -> int:
+    """How many circles strands run in that meet no crossing, each in both directions, by where they go on."""
+    found = 0
+    while onwards:
+        p, _ = next(iter(onwards.items()))
+        found += 1
+        while p in onwards:
+            p = onwards.pop(p)
+    return found // 2
