@@ -141,7 +141,7 @@ def test_numbers_of_two_digits() -> None:
 
 
 def test_circles_within_a_polyhedron_are_kept() -> None:
-    """With 1, -1 in place of 0, whose crossings cancel, every strand meets crossings and is counted with them."""
+    """With 1, -1 in place of 0, whose crossings cancel, every strand meets crossings and is counted."""
     drawn = {"1": "1", "0": "(1,-1)", "0 0": "(1,-1) 0"}
     circles = 0
     for tangles in itertools.product(drawn, repeat=6):
