@@ -9,7 +9,6 @@ entry of the factor and product of two entries, and each kernel is a sum over th
 from __future__ import annotations
 
 import gc
-import statistics
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -184,20 +183,14 @@ def scaled(nodes: int, steps: int, repeats: int) -> dict[str, float]:
     motion = common.rope(nodes)
     made = step._present_bytes()
     motion.advance(1.0, step.SETTLE)
-    start, counts = motion.checkpoint(), motion.counts
-    taken = []
-    for _ in range(repeats):
-        motion.restore(start)
-        began = common.CLOCK()
-        motion.advance(1.0, steps)
-        taken.append(common.CLOCK() - began)
-    evaluations = motion.counts["evaluations"] - counts["evaluations"]
+    taken, counts = step.timed(motion, steps, repeats)
+    evaluations = counts["evaluations"]
     return {
         "nodes": nodes,
         "contacts": len(motion.measure().contacts),
         "evaluations": evaluations,
-        "us_per_evaluation": 1e6 * statistics.median(taken) / evaluations,
-        "ns_per_node": 1e9 * statistics.median(taken) / evaluations / nodes,
+        "us_per_evaluation": 1e6 * taken / evaluations,
+        "ns_per_node": 1e9 * taken / evaluations / nodes,
         "bytes_at_start": max(1.0, (made - before) / nodes),
         "bytes_at_peak": max(1.0, (_highest_bytes() - before) / nodes),
     }

@@ -30,6 +30,7 @@ from torsade.protocols import (
     SnapQuench,
     SnapTwist,
     Spec,
+    Suture,
     Tighten,
 )
 from torsade.protocols.base import Driven, Trial
@@ -43,6 +44,7 @@ TYPICAL: tuple[Spec, ...] = (
     Tighten(knot="overhand", duration="0.5 s"),
     Reidemeister(move="R2"),
     Battery(knot="4_1", twist=2.0),
+    Suture(throws="5,-3", duration="2 s"),
     BendTwist(end_distance="19 cm", twist="270 deg"),
     SnapTwist(twist="60 deg", disorder=0.05),
     SnapQuench(speed="0.5 m/s"),

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks import common
+from torsade.motion.overdamped import Motion
 
 PAGE = Path(__file__).parents[1] / "docs" / "performance.md"
 
@@ -38,20 +39,24 @@ def _present_bytes() -> int:
     return int(status.read_text().split()[1]) * resource.getpagesize()
 
 
-def measure(nodes: int, repeats: int) -> dict[str, float]:
-    """Medians of the same steps taken again and again."""
-    before = _present_bytes()
-    motion = common.rope(nodes)
-    motion.advance(1.0, SETTLE)
+def timed(motion: Motion, steps: int, repeats: int) -> tuple[float, dict[str, int]]:
+    """Median time of the same steps, taken again and again [s], and what was counted in them."""
     start, counts = motion.checkpoint(), motion.counts
     taken = []
     for _ in range(repeats):
         motion.restore(start)
         began = common.CLOCK()
-        motion.advance(1.0, STEPS)
+        motion.advance(1.0, steps)
         taken.append(common.CLOCK() - began)
-    done = {k: n - counts[k] for k, n in motion.counts.items()}
-    wall = statistics.median(taken)
+    return statistics.median(taken), {k: n - counts[k] for k, n in motion.counts.items()}
+
+
+def measure(nodes: int, repeats: int) -> dict[str, float]:
+    """Medians of the same steps taken again and again."""
+    before = _present_bytes()
+    motion = common.rope(nodes)
+    motion.advance(1.0, SETTLE)
+    wall, done = timed(motion, STEPS, repeats)
     return {
         "nodes": nodes,
         "contacts": len(motion.measure().contacts),

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from torsade.assembly import assemble, initial_state
+from torsade.errors import TorsadeError
 from torsade.material import Section, preset
 from torsade.motion import ends
 from torsade.motion.overdamped import Laws, Motion, Outcome, Stepping, model
@@ -127,3 +128,9 @@ def test_throws_of_one_hand_shear_the_skin_most():
     opposite = [run(t)["skin_position"].values[-1, 0, 2] for t in ("3,-3", "5,-3", "3,-5", "5,-5")]
     same = [run(t)["skin_position"].values[-1, 0, 2] for t in ("3,3", "5,3")]
     assert min(np.abs(same)) > 1.5 * max(np.abs(opposite))
+
+
+@pytest.mark.parametrize("frames", [True, 2.5, 1])
+def test_frames_of_a_suture_are_whole_and_two_at_least(frames: object) -> None:
+    with pytest.raises(TorsadeError, match="frames"):
+        Suture(throws="3,-3", frames=frames)

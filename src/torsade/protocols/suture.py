@@ -14,7 +14,7 @@ from pydantic import Field, field_validator, model_validator
 from torsade.errors import QuantityError, TorsadeError, quoted
 from torsade.protocols.base import Positive, Trial
 from torsade.protocols.pulled import COMMON, Experiment, Pulled
-from torsade.units import Angle, Force, Length, Number, Stiffness, Time, Velocity
+from torsade.units import Angle, Force, Length, Number, Stiffness, Time, Velocity, Whole
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -128,7 +128,7 @@ class Suture(Pulled):
     release: Annotated[Time, Field(ge=0)] = Field(
         0.0, description="How long to go on with both ends let go, to see whether the knot holds."
     )
-    frames: int = Field(
+    frames: Whole = Field(
         100,
         ge=2,
         le=1_000_000,
