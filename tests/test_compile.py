@@ -85,7 +85,7 @@ def test_kernels_run_as_plain_python():
         "rod/test_elasticity.py::test_forces_and_moments_balance",
         "rod/test_contact.py::test_drag_torques_are_the_law_written_out",
         "rod/test_contact.py::test_contact_forces_and_moments_sum_to_zero",
-        "rod/test_damping.py::test_spins_solve_the_dense_system",
+        "rod/test_spin.py::test_spins_solve_the_dense_system",
         "rod/test_damping.py::test_bodies_apart_float_each_on_its_own",
         "rod/test_factor.py::test_pattern_is_that_of_the_factors",
         "rod/test_neighbours.py::test_cells_that_share_a_bucket",
