@@ -46,7 +46,7 @@ KERNEL_SOURCES = (
 
 
 def source_hash() -> str:
-    """Hash of every kernel source and of the compiler's version: the name of the cache directory."""
+    """Hash of every kernel source as it is on disk, and of the compiler's version."""
     digest = hashlib.sha256(f"{numba.__version__} {sys.version_info[:2]}".encode())
     for entry in KERNEL_SOURCES:
         path = PACKAGE / entry
@@ -55,11 +55,15 @@ def source_hash() -> str:
     return digest.hexdigest()[:16]
 
 
+SOURCES = source_hash()
+"""Hash of the kernels that this process runs: the name of the cache directory."""
+
+
 def cache_directory() -> Path | None:
     """Where compiled kernels are kept, or None when no directory can be written."""
     roots = [os.environ.get("TORSADE_CACHE_DIR"), config.CACHE_DIR, os.environ.get("XDG_CACHE_HOME")]
     root = next((Path(r) for r in roots if r), Path.home() / ".cache")
-    directory = root / "torsade" / source_hash()
+    directory = root / "torsade" / SOURCES
     try:
         directory.mkdir(parents=True, exist_ok=True)
         return directory if os.access(directory, os.W_OK) else None

@@ -33,7 +33,7 @@ def cores() -> int:
 
 def present() -> dict[str, Any]:
     """What decides numbers here and now: `versions`, `kernels` (a hash of their sources), `machine`."""
-    return {"versions": versions(), "kernels": _compile.source_hash(), "machine": machine()}
+    return {"versions": versions(), "kernels": _compile.SOURCES, "machine": machine()}
 
 
 def versions() -> dict[str, str]:
@@ -103,7 +103,7 @@ def check_same(found: Mapping[str, Any], path: Path) -> None:
             raise TorsadeError(
                 f"{str(path)!r} was begun with {before}, and this is {name} {now[name]}, {advice}"
             )
-    kernels = _compile.source_hash()
+    kernels = _compile.SOURCES
     if found.get("kernels") != kernels:
         before = found.get("kernels", "unknown")
         raise TorsadeError(

@@ -73,16 +73,23 @@ class Point(NamedTuple):
 
     Attributes
     ----------
+    chain : what is bent
     p : share of the path
     shape : the equilibrium
-    unstable : number of motions that would lower its energy
+    system : derivatives there
     tangent : direction of the branch; p changes sign at folds
     """
 
+    chain: Chain
     p: float
     shape: Shape
-    unstable: int
+    system: System
     tangent: Tangent
+
+    @property
+    def unstable(self) -> int:
+        """Number of motions that would lower its energy."""
+        return unstable_modes(self.chain, self.system)
 
 
 def follow(
@@ -162,9 +169,9 @@ def bifurcation(chain: Chain, path: Path, before: Point, after: Point) -> tuple[
 
     None when as many modes are unstable on both sides, or when a fold lies between them.
     """
-    if before.unstable == after.unstable or before.tangent.p * after.tangent.p <= 0:
-        return None
     first, number = sorted((before.unstable, after.unstable))
+    if first == number or before.tangent.p * after.tangent.p <= 0:
+        return None
     modes = lowest(chain, chain.system(before.shape, path.at(before.p)), number)[1][first:]
 
     def at(p: float) -> tuple[Shape, System]:
@@ -221,7 +228,7 @@ def _point(chain: Chain, path: Path, p: float, shape: Shape, system: System, alo
     dq, ds = solver.solve(np.zeros(len(system.residual)), np.concatenate([np.zeros(k), [1.0]]))
     norm = math.hypot(np.linalg.norm(dq) / math.sqrt(chain.twisted_length), path.size(chain) * float(ds[k]))
     tangent = Tangent(system.lift(dq) / norm, ds[:k] / norm, float(ds[k]) / norm)
-    return Point(p, shape, unstable_modes(chain, system), tangent)
+    return Point(chain, p, shape, system, tangent)
 
 
 def _across(chain: Chain, path: Path, shape: Shape, system: System, along: Tangent) -> Bordered:

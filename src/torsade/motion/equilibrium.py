@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -55,11 +56,9 @@ class Bent(NamedTuple):
     kappa : (n_nodes,) curvature, the ends included [1/m]
     total_twist : Tw [rad]
     rotation : how far one grip was turned against the other [rad]
-    thrust : force that pushes the ends towards each other [N]
-    force : (3,) force of the grip on the last end [N]
     torque : twisting moment [N m]
-    unstable : number of motions that would lower the energy, with the ends and both grips held
     shape : edges and multipliers, grips included, in units of L and B
+    controls : what is given, in the same units
     """
 
     fiber: Fiber
@@ -67,11 +66,9 @@ class Bent(NamedTuple):
     kappa: Floats
     total_twist: float
     rotation: float
-    thrust: float
-    force: Floats
     torque: float
-    unstable: int
     shape: Shape
+    controls: Controls
 
     @property
     def end_distance(self) -> float:
@@ -93,6 +90,24 @@ class Bent(NamedTuple):
     def out_of_plane(self) -> float:
         """Largest distance from the plane of the end tangents [m]."""
         return _peak(np.abs(self.x[:, 2]))
+
+    @property
+    def force(self) -> Floats:
+        """Force of the grip on the last end [N], shape (3,)."""
+        problem, L = _device(self.fiber.edges, self.fiber.C / self.fiber.B), self.fiber.length
+        return self.fiber.B / L**2 * _force(problem, _tangents(self.shape), self.x / L, self.shape.torque)
+
+    @property
+    def thrust(self) -> float:
+        """Force that pushes the ends towards each other [N]."""
+        return -float(self.force[0])
+
+    @property
+    def unstable(self) -> int:
+        """Number of motions that would lower the energy, with the ends and both grips held."""
+        gripped = _device(self.fiber.edges, self.fiber.C / self.fiber.B, rotation_held=True)
+        controls = self.controls._replace(rotation=self.rotation)
+        return unstable_modes(gripped, gripped.system(self.shape, controls))
 
     @property
     def stable(self) -> bool:
@@ -255,6 +270,7 @@ def curvature_at_distance(
     return Range(here.kappa_max, low, high)
 
 
+@lru_cache(maxsize=16)
 def _device(edges: int, C: float, *, rotation_held: bool = False) -> Chain:
     """The twist device in units of L and B."""
     if edges < FEWEST_EDGES:
@@ -301,24 +317,22 @@ def _measured(fiber: Fiber, problem: Chain, shape: Shape, controls: Controls) ->
     L = fiber.length
     x = L * np.concatenate([np.zeros((1, 3)), np.cumsum(shape.edge[1:-1], axis=0)])
     kappa = np.empty(len(problem.assembly.hinges))
-    tangent = shape.edge / np.linalg.norm(shape.edge, axis=1)[:, None]
-    hinge_curvature(problem.assembly, tangent, kappa)
-    rotation = problem.rotation(shape)
-    gripped = problem._replace(rotation_held=True)
-    system = gripped.system(shape, controls._replace(rotation=rotation))
-    force = fiber.B / L**2 * _force(problem, tangent, x / L, shape.torque)
+    hinge_curvature(problem.assembly, _tangents(shape), kappa)
     return Bent(
         fiber=fiber,
         x=x,
         kappa=kappa / L,
         total_twist=problem.total_twist(shape),
-        rotation=rotation,
-        thrust=-float(force[0]),
-        force=force,
+        rotation=problem.rotation(shape),
         torque=fiber.B / L * shape.torque,
-        unstable=unstable_modes(gripped, system),
         shape=shape,
+        controls=controls,
     )
+
+
+def _tangents(shape: Shape) -> Floats:
+    """Unit tangents (n_edges, 3), grips among them."""
+    return np.asarray(shape.edge / np.linalg.norm(shape.edge, axis=1)[:, None])
 
 
 def _force(problem: Chain, tangent: Floats, x: Floats, torque: float) -> Floats:
