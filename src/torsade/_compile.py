@@ -147,6 +147,7 @@ def compile_kernels(
     splice: tuple[str, ...] = (),
     owning: tuple[str, ...] = (),
     plain: tuple[str, ...] = (),
+    exact: tuple[str, ...] = (),
 ) -> None:
     """Compile every function that the module defines, in place; those named plain stay as they are.
 
@@ -155,8 +156,9 @@ def compile_kernels(
     become part of their caller before compilation, which spares compiling all they call once more.
     Functions named under owning make arrays, or are given new ones by what they call, and count references
     to arrays; the others only borrow, and save the atomic operations (the compiler refuses a function that
-    makes arrays and is not named). With ``NUMBA_DISABLE_JIT=1`` all functions stay plain Python and can
-    be stepped through.
+    makes arrays and is not named). Those named under exact round after every operation, as numpy does; in
+    others a product and a sum may round once. With ``NUMBA_DISABLE_JIT=1`` all functions stay plain Python
+    and can be stepped through.
     """
     if config.DISABLE_JIT:
         return
@@ -169,6 +171,8 @@ def compile_kernels(
                 options["forceinline"] = True
             if name in splice:
                 options["inline"] = "always"
+            if name in exact:
+                options["fastmath"] = False
             setattr(module, name, compiled(function, name in owning, **options))
 
 

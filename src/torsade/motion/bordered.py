@@ -33,14 +33,13 @@ class Bordered:
         self, band: Floats, right: Floats, corner: Floats, left: Floats | None = None, shift: float = 0.0
     ) -> None:
         self._band, self._shift = band, shift
-        self._right, self._left, self._corner = right, right if left is None else left, corner
+        self._border = right, right if left is None else left, corner
         self._factor = np.empty_like(band)
-        self.negative = int(banded.factorise(band, shift, self._factor))
-        self._inner = right.copy()
-        banded.solve(self._factor, self._inner)
-        self._schur = corner - self._left.T @ self._inner
+        self._reduced = np.empty_like(right), np.empty_like(corner)
+        self.negative = int(banded.condense(band, shift, self._border, self._factor, self._reduced))
         if left is None and len(corner):
-            self.negative += int((np.linalg.eigvalsh(0.5 * (self._schur + self._schur.T)) < 0).sum())
+            schur = self._reduced[1]
+            self.negative += int((np.linalg.eigvalsh(0.5 * (schur + schur.T)) < 0).sum())
 
     def solve(self, r: Floats, s: Floats) -> tuple[Floats, Floats]:
         """Solutions dq (n,) and ds (k,) for right-hand sides r (n,) and s (k,), refined.
@@ -50,9 +49,8 @@ class Bordered:
         numpy.linalg.LinAlgError
             When constraints depend on each other.
         """
-        border, reduced = (self._right, self._left, self._corner), (self._inner, self._schur)
         dq, ds, regular = banded.solve_bordered(
-            self._band, self._shift, self._factor, border, reduced, r, s, REFINEMENTS
+            self._band, self._shift, self._factor, self._border, self._reduced, r, s, REFINEMENTS
         )
         if not regular:
             raise np.linalg.LinAlgError("constraints depend on each other")

@@ -11,16 +11,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq
 
 from torsade.arrays import Floats
-from torsade.motion.bordered import Bordered
+from torsade.motion import newton_kernels
 from torsade.motion.chain import Chain, Controls, Shape, System
+from torsade.motion.lagrangian import towards
+from torsade.motion.newton_kernels import Tangent
 from torsade.motion.spectrum import lowest, unstable_modes
-from torsade.motion.trust import imbalance, newton, settled, step
+from torsade.motion.trust import newton
 
 __all__ = ["Path", "Point", "bifurcation", "carry", "fold", "follow", "switch"]
 
@@ -30,14 +34,13 @@ LONGEST_AT_ONCE = 0.15, 0.7
 """Up to which a path is taken in one step: the angle that edges turn by [rad], and the change of controls in
 units of B and L."""
 
-MOST_CORRECTIONS = 8
-
 
 class _LostError(Exception):
     """A branch could not be followed."""
 
 
-class Path(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Path:
     """Controls from one end, p = 0, to the other, p = 1, and beyond."""
 
     start: Controls
@@ -45,27 +48,28 @@ class Path(NamedTuple):
 
     def at(self, p: float) -> Controls:
         """The controls at the share p of the path."""
-        return self.start.towards(self.stop, p)
+        return towards(self.start, self.rate, float(p))
 
-    @property
+    @cached_property
     def rate(self) -> Controls:
         """How the controls change with p."""
-        return self.start.to(self.stop)
+        start, stop = self.start, self.stop
+        return Controls(
+            stop.value - start.value,
+            stop.load - start.load,
+            stop.torque - start.torque,
+            stop.rotation - start.rotation,
+        )
+
+    @cached_property
+    def _lengths(self) -> tuple[float, float]:
+        """Largest load and length of all values that change from end to end."""
+        return float(np.abs(self.rate.load).max()), float(np.linalg.norm(self.rate.value))
 
     def size(self, chain: Chain) -> float:
         """How far controls change from end to end, in units of B and L and in radians; never nothing."""
-        L, rate = chain.twisted_length, self.rate
-        force = float(np.abs(rate.load).max()) * L**2 / chain.B
-        place = float(np.linalg.norm(rate.value)) / L
-        return math.hypot(force, place, rate.torque * L / chain.B, rate.rotation, 1e-6)
-
-
-class Tangent(NamedTuple):
-    """Direction of a branch: change of edges and angles (n_edges, 4), of multipliers (k,) and of p."""
-
-    change: Floats
-    multipliers: Floats
-    p: float
+        L, rate, (load, value) = chain.twisted_length, self.rate, self._lengths
+        return math.hypot(load * L**2 / chain.B, value / L, rate.torque * L / chain.B, rate.rotation, 1e-6)
 
 
 class Point(NamedTuple):
@@ -221,56 +225,23 @@ def _at(chain: Chain, shape: Shape, path: Path, p: float, tangent: Tangent | Non
     return _point(chain, path, p, *found, upwards)
 
 
-def _point(chain: Chain, path: Path, p: float, shape: Shape, system: System, along: Tangent) -> Point:
-    """An equilibrium with its stability and the branch's direction, which goes on along the one before."""
-    solver = _across(chain, path, shape, system, along)
-    k = chain.held
-    dq, ds = solver.solve(np.zeros(len(system.residual)), np.concatenate([np.zeros(k), [1.0]]))
-    norm = math.hypot(np.linalg.norm(dq) / math.sqrt(chain.twisted_length), path.size(chain) * float(ds[k]))
-    tangent = Tangent(system.lift(dq) / norm, ds[:k] / norm, float(ds[k]) / norm)
-    return Point(chain, p, shape, system, tangent)
-
-
-def _across(chain: Chain, path: Path, shape: Shape, system: System, along: Tangent) -> Bordered:
-    """The Newton system with p unknown, in the plane across a direction."""
-    by_p, gap_by_p = chain.by_path(shape, system, path.rate)
-    k = chain.held
-    corner = np.zeros((k + 1, k + 1))
-    corner[:k, :k] = system.corner
-    corner[:k, k] = gap_by_p
-    corner[k, k] = along.p * path.size(chain) ** 2
-    row = system.lower(along.change) / chain.twisted_length
-    right = np.column_stack([system.border, by_p])
-    left = np.column_stack([system.border, row])
-    return Bordered(system.band, right, corner, left)
+def _point(chain: Chain, path: Path, p: float, shape: Shape, system: System, along: Tangent) -> Point | None:
+    """An equilibrium with the branch's direction, which goes on along the one before; None if it has none."""
+    k, size = chain.held, path.size(chain)
+    change, ds, angle = newton_kernels.direction(chain, shape, system, path.rate, size**2, along)
+    norm = math.hypot(angle, size * float(ds[k]))
+    if not math.isfinite(norm):
+        return None
+    return Point(chain, p, shape, system, Tangent(change / norm, ds[:k] / norm, float(ds[k]) / norm))
 
 
 def _correct(chain: Chain, path: Path, now: Point, along: Tangent, length: float) -> tuple[Point, int] | None:
     """Newton's method in the plane across a direction, a length away from a point."""
-    k = len(chain.weight)
-    shape = chain.moved(now.shape, length * along.change)
-    ds = length * along.multipliers
-    torque = shape.torque + float(ds[k]) if chain.rotation_held else shape.torque
-    shape = shape._replace(reaction=shape.reaction + ds[:k], torque=torque)
-    p = now.p + length * along.p
-    before = math.inf
-    for corrections in range(MOST_CORRECTIONS + 1):
-        controls = path.at(p)
-        if not chain.rotation_held:
-            shape = shape._replace(torque=controls.torque)
-        system = chain.system(shape, controls)
-        if not np.isfinite(system.residual).all():
-            return None
-        size = imbalance(chain, shape, controls, system)
-        if settled(size, before):
-            return _point(chain, path, p, shape, system, along), corrections
-        solver = _across(chain, path, shape, system, along)
-        dq, more = solver.solve(-system.residual, np.concatenate([-system.gap, [0.0]]))
-        if not np.isfinite(dq).all() or float(dq @ dq) > chain.twisted_length:
-            return None
-        shape, before = step(chain, shape, system, dq, more), size
-        p += float(more[-1])
-    return None
+    corrections, p, shape, system = newton_kernels.correct(
+        chain, path.start, path.rate, path.size(chain) ** 2, now.shape, now.p, along, length
+    )
+    point = None if corrections < 0 else _point(chain, path, p, shape, system, along)
+    return None if point is None else (point, corrections)
 
 
 def _land(chain: Chain, path: Path, before: Point, after: Point) -> Point | None:

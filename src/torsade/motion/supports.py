@@ -95,15 +95,17 @@ def chain(
     weight = np.zeros((len(held), n, 3))
     for k, (node, c) in enumerate(held):
         weight[k, before : before + node, c] = 1.0
+    assembly = _assembly(l)
     return Chain(
-        assembly=_assembly(l),
-        EA=fiber.EA,
-        B=fiber.B,
-        C=fiber.C,
+        assembly=assembly,
+        EA=float(fiber.EA),
+        B=float(fiber.B),
+        C=float(fiber.C),
         freedom=freedom,
         normal=normal,
         mass=mass,
         weight=weight,
+        twisted_length=float(assembly.hinge_length.sum()),
         angles=angles,
         rotation_held=rotation_held,
     )
@@ -140,4 +142,4 @@ def controls_at(
     held = np.zeros(len(chain.weight))
     held[: len(value)] = value
     load = np.where(chain.assembly.rest_length[:, None] > 0, np.array(force), 0.0)
-    return Controls(held, load, torque, rotation)
+    return Controls(held, load, float(torque), float(rotation))

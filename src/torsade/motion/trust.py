@@ -16,44 +16,12 @@ import numpy as np
 
 from torsade.arrays import Floats
 from torsade.errors import TorsadeError
+from torsade.motion import newton_kernels
 from torsade.motion.bordered import Bordered
 from torsade.motion.chain import Chain, Controls, Shape, System
+from torsade.motion.newton_kernels import LARGEST_RADIUS
 
-__all__ = ["imbalance", "minimise", "newton", "settled", "step"]
-
-TOLERANCE, ROUND_OFF = 1e-10, 1e-7
-"""Out-of-balance force, in units of those that act, at which a shape is at equilibrium: below the first, or
-below the second when it falls no further."""
-
-GAPS = 1e3
-"""How much more exact gaps are, in units of L: ends near a fiber's length apart say its slope squared."""
-
-LARGEST_RADIUS = 1.0
-"""Longest step, as the root mean square of the angle that edges turn by [rad]."""
-
-
-def imbalance(chain: Chain, shape: Shape, controls: Controls, system: System) -> float:
-    """What is out of balance: forces in units of those that act and B/L^2, gaps in units of L and radians."""
-    L = chain.twisted_length
-    k = len(chain.weight)
-    acting = float(np.abs(shape.reaction).max(initial=0.0)) + float(np.abs(controls.load).max(initial=0.0))
-    unit = acting + abs(shape.torque) / L + chain.B / L**2
-    force = float(np.linalg.norm(system.residual)) / math.sqrt(L) / unit
-    gap = float(np.abs(system.gap[:k]).max(initial=0.0)) / L
-    return max(force, GAPS * gap, GAPS * float(np.abs(system.gap[k:]).max(initial=0.0)))
-
-
-def settled(size: float, before: float) -> bool:
-    """Whether an imbalance is none, after the one before it."""
-    return size < TOLERANCE or (0.5 * before < size < ROUND_OFF and before < ROUND_OFF)
-
-
-def step(chain: Chain, shape: Shape, system: System, dq: Floats, ds: Floats) -> Shape:
-    """The shape after a step of coordinates (n,) and multipliers (k,)."""
-    k = len(chain.weight)
-    moved = chain.moved(shape, system.lift(dq))
-    torque = shape.torque + float(ds[k]) if chain.rotation_held else shape.torque
-    return moved._replace(reaction=shape.reaction + ds[:k], torque=torque)
+__all__ = ["minimise", "newton"]
 
 
 def newton(
@@ -64,36 +32,9 @@ def newton(
     still are motions (n_edges, 4) that the way there does without: next to a bifurcation the modes of another
     branch, onto which an all but singular system would lead.
     """
-    shape = _given(chain, shape, controls)
-    before = math.inf
-    for _ in range(most):
-        system = chain.system(shape, controls)
-        size = imbalance(chain, shape, controls, system)
-        if settled(size, before):
-            return shape, system
-        if not math.isfinite(size) or size > 1e3 * max(before, 1.0):
-            return None
-        try:
-            dq, ds = _without(system, still).solve(
-                -system.residual, np.append(-system.gap, np.zeros(len(still)))
-            )
-        except np.linalg.LinAlgError:
-            return None
-        if not np.isfinite(dq).all() or _length(chain, dq) > LARGEST_RADIUS:
-            return None
-        shape, before = step(chain, shape, system, dq, ds), size
-    return None
-
-
-def _without(system: System, still: Sequence[Floats] | Floats) -> Bordered:
-    """The Newton system in which some motions are kept from taking part."""
-    if len(still) == 0:
-        return Bordered(system.band, system.border, system.corner)
-    border = np.column_stack([system.border, *(system.lower(mode) for mode in still)])
-    corner = np.zeros((border.shape[1], border.shape[1]))
-    k = len(system.gap)
-    corner[:k, :k] = system.corner
-    return Bordered(system.band, border, corner)
+    modes = np.reshape(np.asarray(still, dtype=np.float64), (len(still), len(shape.edge), 4))
+    found, end, here = newton_kernels.newton(chain, shape, controls, most, np.ascontiguousarray(modes))
+    return (end, here) if found else None
 
 
 def minimise(chain: Chain, shape: Shape, controls: Controls, most: int = 200) -> Shape:
@@ -104,13 +45,13 @@ def minimise(chain: Chain, shape: Shape, controls: Controls, most: int = 200) ->
     TorsadeError
         When no equilibrium is found within so many steps.
     """
-    shape = _given(chain, shape, controls)
+    shape = newton_kernels.given(chain, shape, controls)
     radius, shift, before = 0.3 * LARGEST_RADIUS, 0.0, math.inf
     for _ in range(most):
         system = chain.system(shape, controls)
         solver, shift = _convex(chain, system, shift)
-        size = imbalance(chain, shape, controls, system)
-        if shift == 0.0 and settled(size, before):
+        size = newton_kernels.imbalance(chain, shape, controls, system)
+        if shift == 0.0 and newton_kernels.settled(size, before):
             return shape
         before = size if shift == 0.0 else math.inf
         solver, shift, dq, ds = _within(chain, system, solver, shift, radius)
@@ -130,14 +71,14 @@ def minimise(chain: Chain, shape: Shape, controls: Controls, most: int = 200) ->
     )
 
 
-def _given(chain: Chain, shape: Shape, controls: Controls) -> Shape:
-    """The shape with the twisting moment that is given."""
-    return shape if chain.rotation_held else shape._replace(torque=controls.torque)
-
-
 def _length(chain: Chain, dq: Floats) -> float:
     """Root mean square of the angle that edges turn by [rad]."""
     return float(np.linalg.norm(dq)) / math.sqrt(chain.twisted_length)
+
+
+def _step(chain: Chain, shape: Shape, system: System, dq: Floats, ds: Floats) -> Shape:
+    """The shape after a step of coordinates (n,) and multipliers (k,)."""
+    return newton_kernels.step(chain, shape, system.lift(dq), ds)
 
 
 def _convex(chain: Chain, system: System, shift: float) -> tuple[Bordered, float]:
@@ -187,11 +128,11 @@ def _descend(
     before = merit(shape)
     noise = 1e-13 * (abs(before) + chain.B / chain.twisted_length)
     slope = -float(system.residual @ dq) + weight * float(np.abs(system.gap[:k]).sum())
-    trial = step(chain, shape, system, dq, ds)
+    trial = _step(chain, shape, system, dq, ds)
     if merit(trial) <= before - 1e-4 * abs(slope) + noise:
         return trial
     short = np.zeros_like(system.gap)
     short[:k] = chain.gap(trial, controls)
     more, _ = solver.solve(np.zeros_like(dq), short)
-    trial = step(chain, shape, system, dq + more, ds)
+    trial = _step(chain, shape, system, dq + more, ds)
     return trial if merit(trial) <= before - 1e-4 * abs(slope) + noise else None

@@ -98,6 +98,27 @@ def multiply(band: Floats, x: Floats, y: Floats) -> None:
                 y[i - k, c] += band[i, k] * x[i, c]
 
 
+def condense(
+    band: Floats,
+    shift: float,
+    border: tuple[Floats, Floats, Floats],
+    factor: Floats,
+    reduced: tuple[Floats, Floats],
+) -> int:
+    """Factorise H + shift into factor, and reduce its border, as for `solve_bordered`.
+
+    Returns how many pivots of H + shift are negative.
+    """
+    right, left, corner = border
+    inner, schur = reduced
+    negative = factorise(band, shift, factor)
+    inner[:] = right
+    solve(factor, inner)
+    if len(corner):
+        schur[:] = corner - np.dot(left.T, inner)
+    return negative
+
+
 def solve_bordered(
     band: Floats,
     shift: float,
@@ -111,7 +132,7 @@ def solve_bordered(
     """Solutions dq (n,), ds (k,) of [H + shift, U; V^T, D] with a factorised H, refined; whether there are.
 
     border is U (n, k), V (n, k), D (k, k); reduced is (H + shift)^-1 U (n, k) and the Schur complement
-    D - V^T (H + shift)^-1 U (k, k).
+    D - V^T (H + shift)^-1 U (k, k), from `condense`.
     """
     right, left, corner = border
     inner, schur = reduced
@@ -177,4 +198,4 @@ def _solve_dense(matrix: Floats, x: Floats) -> bool:
     return True
 
 
-compile_kernels(__name__, owning=("solve_bordered", "_solve_once", "_solve_dense"))
+compile_kernels(__name__, owning=("condense", "solve_bordered", "_solve_once", "_solve_dense"))
