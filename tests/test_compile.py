@@ -6,6 +6,7 @@ import gc
 import os
 import subprocess
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -74,6 +75,25 @@ def test_compilation_leaves_the_collector_as_it_was():
         finally:
             gc.enable()
         assert False in seen
+
+
+def test_exact_kernels_round_products():
+    """x x less the rounded square is nothing, not what rounding took off."""
+
+    def left(x, square):
+        return x * x - square
+
+    x = 1.0 + 2.0**-30
+    assert _compile.compiled(left, fastmath=False)(x, x * x) == 0.0
+
+
+def test_kernels_let_other_threads_go_on():
+    """Every kernel releases the interpreter's lock."""
+    names = [path for entry in ("rod", "motion") for path in (_compile.PACKAGE / entry).glob("*.py")]
+    modules = [import_module(f"torsade.{path.parent.name}.{path.stem}") for path in names]
+    kernels = [k for m in modules for k in vars(m).values() if isinstance(k, _compile.Kernel)]
+    assert len(kernels) > 100
+    assert all(kernel.targetoptions["nogil"] for kernel in kernels)
 
 
 @pytest.mark.slow

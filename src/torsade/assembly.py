@@ -9,9 +9,10 @@ named tuples of arrays, so that compiled kernels take them as they are.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from torsade.arrays import Bools, Floats, Ints
 from torsade.curve import rotation_minimising_frames
@@ -156,7 +157,7 @@ def split(a: Assembly, hinge: int) -> Assembly:
     """The assembly after its fiber is cut at a hinge: one hinge less, one node and one fiber more.
 
     The node of the hinge becomes two neighbours in the order of nodes, the end of one fiber and the beginning
-    of the next; the order of edges stays. `np.insert(values, node, values[node], axis=0)` makes arrays of
+    of the next; the order of edges stays. `doubled(values, node)` makes arrays of
     nodes fit.
     """
     before, after, node = (int(i) for i in a.hinges[hinge])
@@ -169,7 +170,7 @@ def split(a: Assembly, hinge: int) -> Assembly:
     hinges[:, 2] += hinges[:, 2] > node
     beside = a.beside.copy()
     beside[before, 1] = beside[after, 0] = -1
-    node_length = np.insert(a.node_length, node, 0.5 * a.rest_length[before])
+    node_length = _inserted(a.node_length, node, 0.5 * a.rest_length[before])
     node_length[node + 1] = 0.5 * a.rest_length[after]
     start, end = int(a.edge_start[fiber]), int(a.edge_start[fiber + 1])
     first = float(a.rest_length[start:after].sum())
@@ -177,10 +178,10 @@ def split(a: Assembly, hinge: int) -> Assembly:
     edge_arclength[after:end] -= first
     edge_fiber = a.edge_fiber.copy()
     edge_fiber[after:] += 1
-    fiber_length = np.insert(a.fiber_length, fiber, first)
+    fiber_length = _inserted(a.fiber_length, fiber, first)
     fiber_length[fiber + 1] -= first
     shift = np.arange(len(a.node_start)) > fiber
-    ends_meet = np.insert(a.ends_meet, fiber, False)
+    ends_meet = _inserted(a.ends_meet, fiber, False)
     ends_meet[fiber + 1] = False
     return Assembly(
         edges=edges,
@@ -192,12 +193,22 @@ def split(a: Assembly, hinge: int) -> Assembly:
         edge_arclength=edge_arclength,
         edge_fiber=edge_fiber,
         fiber_length=fiber_length,
-        node_start=np.insert(a.node_start + shift, fiber + 1, node + 1),
-        edge_start=np.insert(a.edge_start, fiber + 1, after),
-        hinge_start=np.insert(a.hinge_start - shift, fiber + 1, hinge),
-        closed=np.insert(a.closed, fiber, False),
+        node_start=_inserted(a.node_start + shift, fiber + 1, node + 1),
+        edge_start=_inserted(a.edge_start, fiber + 1, after),
+        hinge_start=_inserted(a.hinge_start - shift, fiber + 1, hinge),
+        closed=_inserted(a.closed, fiber, False),
         ends_meet=ends_meet,
     )
+
+
+def doubled(values: NDArray[Any], place: int) -> NDArray[Any]:
+    """Values (n, ...) with that at a place twice, (n + 1, ...)."""
+    return np.concatenate((values[: place + 1], values[place:]))
+
+
+def _inserted(values: NDArray[Any], place: int, value: float) -> NDArray[Any]:
+    """Values (n,) with one more before a place; np.insert does the same in ten times the time."""
+    return np.concatenate((values[:place], np.array([value], values.dtype), values[place:]))
 
 
 def opened(a: Assembly, state: State, hinge: int) -> tuple[Assembly, State]:

@@ -10,7 +10,7 @@ import pytest
 import torsade as ts
 from short_runs import SHORT, assert_same
 from torsade.errors import TorsadeError
-from torsade.protocols import PrisonEscape, SnapTwist, Spec, ensemble
+from torsade.protocols import PrisonEscape, SnapQuench, SnapTwist, Spec, ensemble
 from torsade.protocols.ensemble import THREAD
 
 
@@ -22,6 +22,17 @@ def bends() -> list[Spec]:
 def test_every_protocol_gives_the_same_bits_in_threads(protocol: str) -> None:
     spec = SHORT[protocol]
     for result in ensemble([spec] * 4, threads=3):
+        assert_same(result, spec.run())
+
+
+def test_cascades_in_threads_are_those_alone() -> None:
+    """Each is bent to another shape before it breaks, while others are: what they share does not change."""
+    specs: list[Spec] = [
+        kind(disorder=0.05, seed=seed, frames=1, **given)
+        for seed in range(6)
+        for kind, given in ((SnapTwist, {"twist": f"{40 * seed} deg"}), (SnapQuench, {"approach": "1 ms"}))
+    ]
+    for spec, result in zip(specs, ensemble(specs, threads=3), strict=True):
         assert_same(result, spec.run())
 
 

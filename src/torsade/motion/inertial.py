@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade.arrays import Floats
-from torsade.assembly import Assembly, State, split
+from torsade.assembly import Assembly, State, doubled, split
 from torsade.errors import TorsadeError
 from torsade.material import Material, Section
 from torsade.motion import verlet
@@ -206,17 +206,13 @@ class Inertial:
         """Cut a fiber at a hinge: both sides keep their velocities; each node has its half edge's mass."""
         node = int(self.assembly.hinges[hinge, 2])
         density = self.inertia.mass[node] / self.assembly.node_length[node]
-
-        def doubled(values: NDArray[Any]) -> NDArray[Any]:
-            return np.insert(values, node, values[node], axis=0)
-
-        state, bc, mass = self.state, self.boundary, doubled(self.inertia.mass)
+        state, bc, mass = self.state, self.boundary, doubled(self.inertia.mass, node)
         self.assembly = split(self.assembly, hinge)
         mass[node : node + 2] = density * self.assembly.node_length[node : node + 2]
         twist = np.delete(state.reference_twist, hinge)
-        self.state = state._replace(x=doubled(state.x), v=doubled(state.v), reference_twist=twist)
+        self.state = state._replace(x=doubled(state.x, node), v=doubled(state.v, node), reference_twist=twist)
         self.boundary = bc._replace(
-            held=doubled(bc.held), velocity=doubled(bc.velocity), force=doubled(bc.force)
+            held=doubled(bc.held, node), velocity=doubled(bc.velocity, node), force=doubled(bc.force, node)
         )
         self.inertia = self.inertia._replace(mass=mass)
         self.work = verlet.verlet_work(self.assembly)
