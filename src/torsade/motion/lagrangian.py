@@ -220,4 +220,4 @@ def total(values: Floats) -> float:
 
 _ALL = ("towards", "lift", "lower", "moved", "system", "_rotation_gap", "by_path", "total")
 
-compile_kernels(__name__, owning=_ALL, exact=_ALL)
+compile_kernels(__name__, splice=("_rotation_gap",), owning=_ALL, exact=_ALL)

@@ -142,16 +142,9 @@ def _without(here: System, still: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def _across(
-    chain: Chain,
-    shape: Shape,
-    here: System,
-    rate: Controls,
-    weight: float,
-    along: Tangent,
-    r: Floats,
-    s: Floats,
-) -> tuple[Floats, Floats, bool]:
-    """A Newton step with p unknown, in the plane across a direction, for right-hand sides r (n,), s (k + 1,).
+    chain: Chain, shape: Shape, here: System, rate: Controls, weight: float, along: Tangent
+) -> tuple[Floats, Floats, Floats]:
+    """The border of a system in which p is unknown, in the plane across a direction.
 
     rate is that of the controls with p, weight the square of their change from p = 0 to 1.
     """
@@ -166,7 +159,7 @@ def _across(
     left[:, :k] = here.border
     right[:, k] = by_p
     left[:, k] = lower(here.basis, along.change) / chain.twisted_length
-    return solved(here.band, (right, left, corner), r, s)
+    return right, left, corner
 
 
 def direction(
@@ -179,7 +172,8 @@ def direction(
     """
     s = np.zeros(len(here.gap) + 1)
     s[-1] = 1.0
-    dq, ds, regular = _across(chain, shape, here, rate, weight, along, np.zeros(len(here.residual)), s)
+    border = _across(chain, shape, here, rate, weight, along)
+    dq, ds, regular = solved(here.band, border, np.zeros(len(here.residual)), s)
     angle = norm(dq) / math.sqrt(chain.twisted_length) if regular else math.inf
     return lift(here.basis, dq), ds, angle
 
@@ -213,7 +207,8 @@ def correct(
             return corrections, p, shape, here
         s = np.zeros(len(here.gap) + 1)
         s[:-1] = -here.gap
-        dq, ds, regular = _across(chain, shape, here, rate, weight, along, -here.residual, s)
+        border = _across(chain, shape, here, rate, weight, along)
+        dq, ds, regular = solved(here.band, border, -here.residual, s)
         if not regular or not np.dot(dq, dq) <= chain.twisted_length:
             break
         shape, before = step(chain, shape, lift(here.basis, dq), ds), size
@@ -239,4 +234,4 @@ _ALL = (
     "correct",
 )
 
-compile_kernels(__name__, owning=_ALL, exact=_ALL)
+compile_kernels(__name__, splice=("_without",), owning=_ALL, exact=_ALL)
