@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -56,10 +58,16 @@ def test_rates_of_residuals_and_gaps(c: Chain) -> None:
     assert gap == pytest.approx(after.gap - before.gap, abs=1e-13)
 
 
+def test_hypotenuses_are_those_of_python() -> None:
+    pairs = np.random.default_rng(5).lognormal(0.0, 3.0, size=(20_000, 2))
+    assert newton_kernels.hypotenuse(3.0, 4.0) == 5.0
+    assert all(newton_kernels.hypotenuse(a, b) == math.hypot(a, b) for a, b in pairs.tolist())
+
+
 def test_no_point_is_found_where_numbers_are_none() -> None:
     c = CHAINS[0]
     shape, path = arch(c, 1.0), Path(controls_at(c, (0.7, 0.0, 0.0)), controls_at(c, (0.5, 0.0, 0.0)))
     still = newton_kernels.Tangent(np.full((len(shape.edge), 4), np.nan), np.zeros(c.held), 1.0)
-    assert newton_kernels.correct(c, path.start, path.rate, 1.0, shape, 0.0, still, 0.1)[0] == -1
+    assert newton_kernels.correct(c, path.start, path.rate, 1.0, 1.0, shape, 0.0, still, 0.1)[0] == -1
     lost = path.start._replace(value=np.full(3, np.nan))
     assert not newton_kernels.newton(c, shape, lost, 12, np.empty((0, len(shape.edge), 4)))[0]

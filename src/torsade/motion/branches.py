@@ -22,7 +22,7 @@ from torsade.arrays import Floats
 from torsade.motion import newton_kernels
 from torsade.motion.chain import Chain, Controls, Shape, System
 from torsade.motion.lagrangian import towards
-from torsade.motion.newton_kernels import Tangent
+from torsade.motion.newton_kernels import MOST_STEPS, Tangent
 from torsade.motion.spectrum import lowest, unstable_modes
 from torsade.motion.trust import newton
 
@@ -218,34 +218,29 @@ def _distance(chain: Chain, path: Path, before: Point, after: Point) -> float:
 
 def _at(chain: Chain, shape: Shape, path: Path, p: float, tangent: Tangent | None) -> Point | None:
     """The point of a branch at which a path is begun."""
-    found = newton(chain, shape, path.at(p))
-    if found is None:
-        return None
     upwards = tangent or Tangent(np.zeros((len(shape.edge), 4)), np.zeros(chain.held), 1.0)
-    return _point(chain, path, p, *found, upwards)
+    return _arrived(chain, shape, path, p, upwards)
 
 
-def _point(chain: Chain, path: Path, p: float, shape: Shape, system: System, along: Tangent) -> Point | None:
-    """An equilibrium with the branch's direction, which goes on along the one before; None if it has none."""
-    k, size = chain.held, path.size(chain)
-    change, ds, angle = newton_kernels.direction(chain, shape, system, path.rate, size**2, along)
-    norm = math.hypot(angle, size * float(ds[k]))
-    if not math.isfinite(norm):
-        return None
-    return Point(chain, p, shape, system, Tangent(change / norm, ds[:k] / norm, float(ds[k]) / norm))
+def _arrived(chain: Chain, shape: Shape, path: Path, p: float, along: Tangent) -> Point | None:
+    """The point next to a shape at share p, where the branch goes on along a direction."""
+    size = path.size(chain)
+    found, end, system, tangent = newton_kernels.arrive(
+        chain, shape, path.start, path.rate, size, size**2, p, along, MOST_STEPS
+    )
+    return Point(chain, p, end, system, tangent) if found else None
 
 
 def _correct(chain: Chain, path: Path, now: Point, along: Tangent, length: float) -> tuple[Point, int] | None:
     """Newton's method in the plane across a direction, a length away from a point."""
-    corrections, p, shape, system = newton_kernels.correct(
-        chain, path.start, path.rate, path.size(chain) ** 2, now.shape, now.p, along, length
+    size = path.size(chain)
+    corrections, p, shape, system, tangent = newton_kernels.correct(
+        chain, path.start, path.rate, size, size**2, now.shape, now.p, along, length
     )
-    point = None if corrections < 0 else _point(chain, path, p, shape, system, along)
-    return None if point is None else (point, corrections)
+    return None if corrections < 0 else (Point(chain, p, shape, system, tangent), corrections)
 
 
 def _land(chain: Chain, path: Path, before: Point, after: Point) -> Point | None:
     """The point at p = 1 between two others."""
     near = before if 1.0 - before.p < after.p - 1.0 else after
-    found = newton(chain, near.shape, path.at(1.0))
-    return None if found is None else _point(chain, path, 1.0, *found, before.tangent)
+    return _arrived(chain, near.shape, path, 1.0, before.tangent)

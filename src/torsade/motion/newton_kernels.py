@@ -36,7 +36,8 @@ GAPS = 1e3
 LARGEST_RADIUS = 1.0
 """Longest step, as the root mean square of the angle that edges turn by [rad]."""
 
-MOST_CORRECTIONS = 8
+MOST_STEPS, MOST_CORRECTIONS = 12, 8
+"""At given controls, and along a branch."""
 
 REFINEMENTS = 2
 
@@ -162,36 +163,75 @@ def _across(
     return right, left, corner
 
 
-def direction(
-    chain: Chain, shape: Shape, here: System, rate: Controls, weight: float, along: Tangent
-) -> tuple[Floats, Floats, float]:
-    """The direction of a branch, which goes on along the one before; rate and weight as in `correct`.
-
-    Returns the change (n_edges, 4) of edges and angles, that of multipliers and p (k + 1,), and the root mean
-    square of the angle that edges turn by, infinite where there is no direction.
-    """
-    s = np.zeros(len(here.gap) + 1)
-    s[-1] = 1.0
+def _direction(
+    chain: Chain, shape: Shape, here: System, rate: Controls, size: float, weight: float, along: Tangent
+) -> Tangent:
+    """The direction of a branch, which goes on along the one before; its p is NaN where there is none."""
+    k = len(here.gap)
+    s = np.zeros(k + 1)
+    s[k] = 1.0
     border = _across(chain, shape, here, rate, weight, along)
     dq, ds, regular = solved(here.band, border, np.zeros(len(here.residual)), s)
-    angle = norm(dq) / math.sqrt(chain.twisted_length) if regular else math.inf
-    return lift(here.basis, dq), ds, angle
+    length = hypotenuse(norm(dq) / math.sqrt(chain.twisted_length), size * ds[k]) if regular else math.nan
+    return Tangent(lift(here.basis, dq) / length, ds[:k] / length, ds[k] / length)
+
+
+def hypotenuse(a: float, b: float) -> float:
+    """sqrt(a^2 + b^2), rounded once, of numbers whose squares are neither too large nor too small."""
+    h = math.sqrt(a * a + b * b)
+    p, p_off = _square(a)
+    q, q_off = _square(b)
+    r, r_off = _square(h)
+    if p < q:
+        p, q = q, p
+    return h + ((p - r) + q + (p_off + q_off - r_off)) / (2.0 * h)
+
+
+def _square(x: float) -> tuple[float, float]:
+    """The square of x, rounded, and what rounding took off (Dekker 1971)."""
+    c = 134217729.0 * x
+    high = c - (c - x)
+    low = x - high
+    square = x * x
+    return square, low * low - ((square - high * high) - 2.0 * (high * low))
+
+
+def arrive(
+    chain: Chain,
+    shape: Shape,
+    start: Controls,
+    rate: Controls,
+    size: float,
+    weight: float,
+    p: float,
+    along: Tangent,
+    most: int,
+) -> tuple[bool, Shape, System, Tangent]:
+    """Newton's method at share p of a path, and the direction of the branch there; arguments as of `correct`.
+
+    Returns whether there is a point, and its shape, system and direction.
+    """
+    found, end, here = newton(chain, shape, towards(start, rate, p), most, np.empty((0, len(shape.edge), 4)))
+    tangent = _direction(chain, end, here, rate, size, weight, along) if found else along
+    return found and math.isfinite(tangent.p), end, here, tangent
 
 
 def correct(
     chain: Chain,
     start: Controls,
     rate: Controls,
+    size: float,
     weight: float,
     shape: Shape,
     p: float,
     along: Tangent,
     length: float,
-) -> tuple[int, float, Shape, System]:
+) -> tuple[int, float, Shape, System, Tangent]:
     """Newton's method in the plane across a direction, a length away from a shape at share p of a path.
 
-    Controls change from the start at a rate; weight is the square of their change from p = 0 to 1. Returns
-    how many corrections it took, or -1 when there is no point, and p, shape and system of the point.
+    Controls change from the start at a rate; size is that of their change from p = 0 to 1, weight its
+    square. Returns how many corrections it took, or -1 when there is no point, and p, shape, system and
+    direction of the point.
     """
     shape = step(chain, shape, length * along.change, length * along.multipliers)
     p += length * along.p
@@ -200,23 +240,24 @@ def correct(
     here = system(chain, shape, controls)
     before = math.inf
     for corrections in range(MOST_CORRECTIONS + 1):
-        size = imbalance(chain, shape, controls, here)
-        if not math.isfinite(size):
+        off = imbalance(chain, shape, controls, here)
+        if not math.isfinite(off):
             break
-        if settled(size, before):
-            return corrections, p, shape, here
+        if settled(off, before):
+            tangent = _direction(chain, shape, here, rate, size, weight, along)
+            return corrections if math.isfinite(tangent.p) else -1, p, shape, here, tangent
         s = np.zeros(len(here.gap) + 1)
         s[:-1] = -here.gap
         border = _across(chain, shape, here, rate, weight, along)
         dq, ds, regular = solved(here.band, border, -here.residual, s)
         if not regular or not np.dot(dq, dq) <= chain.twisted_length:
             break
-        shape, before = step(chain, shape, lift(here.basis, dq), ds), size
+        shape, before = step(chain, shape, lift(here.basis, dq), ds), off
         p += ds[-1]
         controls = towards(start, rate, p)
         shape = given(chain, shape, controls)
         here = system(chain, shape, controls)
-    return -1, p, shape, here
+    return -1, p, shape, here, along
 
 
 _ALL = (
@@ -230,7 +271,10 @@ _ALL = (
     "newton",
     "_without",
     "_across",
-    "direction",
+    "_direction",
+    "hypotenuse",
+    "_square",
+    "arrive",
     "correct",
 )
 

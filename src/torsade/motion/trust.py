@@ -19,13 +19,17 @@ from torsade.errors import TorsadeError
 from torsade.motion import newton_kernels
 from torsade.motion.bordered import Bordered
 from torsade.motion.chain import Chain, Controls, Shape, System
-from torsade.motion.newton_kernels import LARGEST_RADIUS
+from torsade.motion.newton_kernels import LARGEST_RADIUS, MOST_STEPS
 
 __all__ = ["minimise", "newton"]
 
 
 def newton(
-    chain: Chain, shape: Shape, controls: Controls, most: int = 12, still: Sequence[Floats] | Floats = ()
+    chain: Chain,
+    shape: Shape,
+    controls: Controls,
+    most: int = MOST_STEPS,
+    still: Sequence[Floats] | Floats = (),
 ) -> tuple[Shape, System] | None:
     """The equilibrium next to a shape, stable or not, and its derivatives; None when none is near.
 
