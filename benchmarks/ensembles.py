@@ -115,12 +115,13 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     options = common.parser(__doc__)
     options.add_argument("--no-write", action="store_true", help="leave the pages of docs/ as they are")
     options.add_argument("--threads", type=int, default=2, help="how many runs at a time")
+    options.add_argument("--rounds", type=int, default=3, help="how often each way is timed")
     given = options.parse_args(arguments)
-    rounds, few = (1, 2) if given.quick else (3, 0)
+    rounds, few = (1, 2) if given.quick else (given.rounds, 0)
     families = (
         ("bends, 0.2 s each", bends(few or 16)),
         ("cascades, twisted", cascades(few or 200)),
-        ("cascades, quenched", quenches(few or 50)),
+        ("cascades, quenched", quenches(few or 20)),
     )
     rows = [compare(name, specs, given.threads, rounds) for name, specs in families]
     body = [[*list(row.values())[:-1], "yes" if row["same"] else "no"] for row in rows]
