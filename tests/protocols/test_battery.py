@@ -12,6 +12,7 @@ import pytest
 
 import torsade as ts
 from torsade.protocols import Battery
+from torsade.protocols.battery_numbers import KINDS
 from torsade.protocols.charging import trembled
 from torsade.protocols.discharge import crossing_losses, discharge_times, mean_on_the_way
 from torsade.protocols.driving import Interrupted
@@ -147,6 +148,22 @@ def test_charged_is_where_it_stops() -> None:
     assert result.frames == 1
     assert set(report["discharge_time_T0"].values()) == {None}
     assert report["writhe"] == pytest.approx(0.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("stop", ["charged", "discharged"])
+def test_the_energy_of_a_battery_is_that_of_the_closed_fiber(stop: str) -> None:
+    """With the hinge that is cut through, to the bit, as link, twist and writhe are; wherever it is cut."""
+    spec = Battery(knot="3_1", twist=2.0, nodes=60, charging="0.1 s", duration="1 ms", frames=4)
+    if stop == "charged":
+        spec = Battery(**{**spec.stored(), "stop": stop, "duration": None})
+    result = spec.run()
+    data, report = result.dataset, Battery.report(result)
+    energies = {kind: float(data[f"charge_energy_{kind}"][-1]) / report["E0_J"] for kind in KINDS}
+    assert report["energy_E0"] == energies | {"total": sum(energies.values())}
+    for name in ("link", "twist", "writhe"):
+        assert report[name] == data[f"charge_{name}"][-1]
+    if stop == "charged":
+        assert report["energy_final_E0"] == report["energy_E0"]["total"]
 
 
 def test_a_trefoil_is_untied() -> None:

@@ -278,7 +278,7 @@ class Battery(Driven):
         cut = Discharge(a, closed.state, hinge, self.model(), material, section, self.stepping)
         fixed = {f"charge_{name}": (_dims(name), values) for name, values in charge.history.items()}
         place = float(a.rest_length[: a.hinges[hinge, 2]].sum() / a.fiber_length[0])
-        at_cut = {"steps": closed.steps, "place": place, **cut.energies()._asdict()}
+        at_cut = {"steps": closed.steps, "place": place, **closed.energies()._asdict()}
         units = Units(self.unit_time, self.unit_energy)
         return Trial(
             cut,
