@@ -9,20 +9,16 @@ import numpy as np
 
 from torsade.arrays import Floats
 from torsade.knots.finding import interpret
+from torsade.protocols.battery import KINDS, SHARES
 from torsade.protocols.charging import Charge
 from torsade.protocols.discharge import Discharge, crossing_losses, discharge_times, mean_on_the_way
 from torsade.results import Result
 from torsade.topology.identify import identify
 
-__all__ = ["SHARES", "Units", "concluded", "reported"]
-
-SHARES = (50, 10, 1)
-"""Per cents of the energy at the cut, down to which discharge times are measured."""
+__all__ = ["Units", "concluded", "reported"]
 
 ON_THE_WAY = (0.5, 0.01)
 """Shares of the energy between which shapes are intermediate."""
-
-KINDS = ("bend", "twist", "stretch", "contact")
 
 
 class Units(NamedTuple):
