@@ -2,7 +2,8 @@
 
 Random closed curves with x(s + L/q) = Q x(s), of a few Fourier modes, are named. Those that are the knot in
 question are shrunk, and made exactly symmetric again after every few steps. With q = 4, Q turns by a right
-angle and reflects; with q = 2, Q = -1.
+angle and reflects; with q = 2, Q = -1. Writes its table into docs/batteries.md, between marks, unless
+`--no-write` is given.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.random import Generator
 
 from benchmarks import common
+from benchmarks.batteries import PAGE
 from torsade.arrays import Floats
 from torsade.curve import length, resample
 from torsade.errors import TorsadeError
@@ -65,6 +67,7 @@ def random_curve(random: Generator, q: int) -> Floats:
 
 
 def spaced(x: Floats, spacing: float, q: int) -> Floats:
+    """A symmetric curve (n, 3) with nodes so far apart; q divides their number."""
     n = q * max(8, round(length(x, True) / spacing / q))
     return symmetric(resample(x, n=n, closed=True), q)
 
@@ -138,9 +141,13 @@ def table(rows: Sequence[Found]) -> str:
 
 
 def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
-    options = common.parser(__doc__).parse_args(arguments)
+    parser = common.parser(__doc__)
+    parser.add_argument("--no-write", action="store_true", help=f"leave {PAGE.name} as it is")
+    options = parser.parse_args(arguments)
     studied, curves = (STUDIED[:1], 40) if options.quick else (STUDIED, CURVES)
     rows = [study(knot, q, curves) for knot, q in studied]
+    if not (options.no_write or options.quick):
+        common.put(table(rows), PAGE, "symmetric")
     return common.show({"symmetric": rows}, [table(rows)], options.json)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -177,6 +178,14 @@ def test_strands_that_hardly_moved_keep_the_name_they_would_get(
     monkeypatch.setattr(discharge, "HARDLY", 0.0)
     assert spec.run().dataset.attrs["frame_knots"] == sooner
     assert len(asked) - few > few
+
+
+def test_every_number_is_explained(short) -> None:
+    """The table of keys on the page is that of `--json`."""
+    page = (Path(__file__).parents[2] / "docs" / "batteries.md").read_text(encoding="utf-8")
+    rows = page.split("| key | meaning |")[1].split("\n\n")[0].splitlines()[2:]
+    keys = [key for row in rows for key in re.findall(r"`(\w+)`", row.split(" | ")[0])]
+    assert sorted(keys) == sorted(Battery.report(short))
 
 
 def test_charged_is_where_it_stops() -> None:
