@@ -26,8 +26,8 @@ from torsade.topology.identify import identify_curves
 from torsade.topology.isotopy import thinned
 
 STUDIED = (("4_1", 4), ("6_3", 4), ("6_3", 2))
-CURVES, NODES = 5000, 240
-SHRUNK, FINISHED = 20, 2
+CURVES, NODES = 1500, 240
+SHRUNK, FINISHED = 8, 2
 """How many of the shortest curves are shrunk, and how many of the shortest of these to the end."""
 
 LONGEST = 400.0
