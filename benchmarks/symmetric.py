@@ -25,8 +25,10 @@ from torsade.knots.shrink import Relaxed, Settings, loops_of, relax
 from torsade.topology.identify import identify_curves
 from torsade.topology.isotopy import thinned
 
-STUDIED = (("4_1", 4), ("6_3", 4), ("6_3", 2))
-CURVES, NODES = 1500, 240
+STUDIED = (("4_1", 4, 1500), ("6_3", 4, 5000), ("6_3", 2, 1500))
+"""Knots, the order of Q, and how many curves are drawn."""
+
+NODES = 240
 SHRUNK, FINISHED = 8, 2
 """How many of the shortest curves are shrunk, and how many of the shortest of these to the end."""
 
@@ -144,8 +146,8 @@ def main(arguments: Sequence[str] | None = None) -> dict[str, Any]:
     parser = common.parser(__doc__)
     parser.add_argument("--no-write", action="store_true", help=f"leave {PAGE.name} as it is")
     options = parser.parse_args(arguments)
-    studied, curves = (STUDIED[:1], 40) if options.quick else (STUDIED, CURVES)
-    rows = [study(knot, q, curves) for knot, q in studied]
+    studied = (("4_1", 4, 40),) if options.quick else STUDIED
+    rows = [study(*one) for one in studied]
     if not (options.no_write or options.quick):
         common.put(table(rows), PAGE, "symmetric")
     return common.show({"symmetric": rows}, [table(rows)], options.json)
