@@ -154,3 +154,10 @@ def test_a_strand_pulled_away_is_laid_on_the_skin_and_no_farther() -> None:
     assert apart.min() == pytest.approx(spec.h_s + spec.h * (1 - 2 * DEPTH), rel=1e-9)
     state.x[:n, 1] += 1.0
     assert trial.catch(1.0) is None
+
+
+@pytest.mark.parametrize("change", [{"z_peak_m": 3}, {"z_peak_m": {"a": 1.0}}, {"c_f": "much"}])
+def test_numbers_that_are_damaged_are_refused(result: ts.Result, change: dict[str, object]) -> None:
+    damaged = ts.Result(result.dataset.assign_attrs(change))
+    with pytest.raises(TorsadeError, match="cannot be read"):
+        damaged.report()

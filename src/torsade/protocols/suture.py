@@ -289,17 +289,17 @@ class Suture(Pulled):
             "writhe": bottom + top,
             "tau": tau_of(bottom, top),
             "z_displacement_m": _sides(z[last]),
-            "z_peak_m": attrs.get("z_peak_m"),
+            "z_peak_m": {side: float(attrs["z_peak_m"][side]) for side in ("a", "b", "relative")},
             "gap_m": float(end["gap"]),
-            "closed_at_s": attrs.get("closed_at_s"),
+            "closed_at_s": _known(attrs, "closed_at_s"),
             "skin_force_N": {
                 "normal": end["skin_pressing"].values.tolist(),
                 "shear": end["skin_shearing"].values.tolist(),
                 "along_z": end["skin_force"][:, 2].values.tolist(),
                 "spring": end["spring_force"].values.tolist(),
             },
-            "slip_speed_m_per_s": attrs.get("slip_speed_m_per_s"),
-            "c_f": attrs.get("c_f"),
+            "slip_speed_m_per_s": _known(attrs, "slip_speed_m_per_s"),
+            "c_f": _known(attrs, "c_f"),
             "gap_after_release_m": float(data["gap"][-1]) if spec.release > 0 else None,
             "times_s": data["time"].values.tolist(),
             "gaps_m": data["gap"].values.tolist(),
@@ -307,6 +307,11 @@ class Suture(Pulled):
             "steps": attrs["steps"],
             "wall_s": attrs["wall_s"],
         }
+
+
+def _known(attrs: Mapping[str, Any], name: str) -> float | None:
+    """A number concluded from the run, where there is one."""
+    return float(attrs[name]) if name in attrs else None
 
 
 def _sides(z: Floats) -> dict[str, float]:
