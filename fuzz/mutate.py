@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 from random import Random
 
-__all__ = ["mutated"]
+__all__ = ["LONGEST", "WAYS", "mutated"]
 
 NUMBER = re.compile(rb"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
@@ -48,7 +48,7 @@ def mutated(data: bytes, words: Sequence[bytes], rng: Random) -> bytes:
     """The input changed in one place or a few; its first line, which says what reads it, stays."""
     head, end, body = data.partition(b"\n")
     for _ in range(rng.choice((1, 1, 1, 2, 3, 6))):
-        body = rng.choice(_WAYS)(body, words, rng)[:LONGEST]
+        body = rng.choice(WAYS)(body, words, rng)[:LONGEST]
     return head + end + body
 
 
@@ -59,7 +59,7 @@ def _number(body: bytes, words: Sequence[bytes], rng: Random) -> bytes:
         return rng.choice(NUMBERS) + body
     one, new = rng.choice(found), rng.choice(NUMBERS)
     if rng.random() < 0.2:
-        return body.replace(one[0], new)
+        return body.replace(one[0], new, LONGEST // max(1, len(new)))
     return body[: one.start()] + new + body[one.end() :]
 
 
@@ -131,4 +131,4 @@ def _bytes(body: bytes, words: Sequence[bytes], rng: Random) -> bytes:
     return bytes(changed)
 
 
-_WAYS = (*(_number,) * 3, *(_word, _sign, _tokens) * 2, _lines, _again, _nested, _bytes)
+WAYS = (*(_number,) * 3, *(_word, _sign, _tokens) * 2, _lines, _again, _nested, _bytes)

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import sys
+import tracemalloc
+from collections.abc import Sequence
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -14,7 +17,7 @@ from torsade.errors import TorsadeError
 
 sys.path.insert(0, str(Path(__file__).parents[2]))
 
-from fuzz.mutate import LONGEST, mutated
+from fuzz.mutate import LONGEST, WAYS, mutated
 from fuzz.samples import samples, words
 from fuzz.targets import TARGETS, HarmError, Target, one_sentence, tried
 
@@ -46,6 +49,30 @@ def test_mutations_repeat_and_keep_what_reads_the_input() -> None:
     assert spoilt == [mutated(sound, words("curves"), Random(k)) for k in range(200)]
     assert len(set(spoilt)) > 150
     assert all(data.startswith(b"csv\n") and len(data) <= LONGEST + 4 for data in spoilt)
+
+
+class Longest(Random):
+    """Chooses whatever makes an input long."""
+
+    def random(self) -> float:
+        return 0.0
+
+    def choice(self, seq: Sequence[Any]) -> Any:
+        return max(
+            seq, key=lambda one: one if isinstance(one, int) else len(one) if isinstance(one, bytes) else 0
+        )
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_spoiling_takes_little_memory(way: Any) -> None:
+    """Or it is the fuzzer that fills it: the same number 300 000 times, each of them to be 5000 digits."""
+    body = b"1;x\n" * 260_000
+    tracemalloc.start()
+    try:
+        way(body, [b"word"], Longest(1))
+        assert tracemalloc.get_traced_memory()[1] < 100e6
+    finally:
+        tracemalloc.stop()
 
 
 @pytest.mark.parametrize(

@@ -212,20 +212,7 @@ def _print(file: str, read: Trials, found: Analysis) -> None:
         print("\nsectors of the plane of twist and limit curvature; ± are standard deviations")
         print_grid(
             ("from deg", "to deg", "trials", "twist deg", "±", "kappa 1/m", "±", "pieces", "±"),
-            [
-                (
-                    math.degrees(s.low),
-                    math.degrees(s.high),
-                    s.twist.n,
-                    math.degrees(s.twist.value),
-                    math.degrees(s.twist.deviation),
-                    s.kappa.value,
-                    s.kappa.deviation,
-                    s.pieces.value,
-                    s.pieces.deviation,
-                )
-                for s in found.sectors
-            ],
+            [s.row for s in found.sectors],
         )
 
 

@@ -124,21 +124,7 @@ def sector_table(trials: Table, rod: Rod) -> Table:
         "from_deg", "to_deg", "trials", "twist_deg", "twist_sd_deg", "limit_curvature_per_m",
         "limit_curvature_sd_per_m", "pieces", "pieces_sd",
     )  # fmt: skip
-    rows: list[tuple[Cell, ...]] = [
-        (
-            math.degrees(s.low),
-            math.degrees(s.high),
-            s.pieces.n,
-            math.degrees(s.twist.value),
-            math.degrees(s.twist.deviation),
-            s.kappa.value,
-            s.kappa.deviation,
-            s.pieces.value,
-            s.pieces.deviation,
-        )
-        for s in sectors(twist, kappa, pieces, rod)
-    ]
-    return Table(columns, rows)
+    return Table(columns, [s.row for s in sectors(twist, kappa, pieces, rod)])
 
 
 def _number(cell: Cell) -> float:

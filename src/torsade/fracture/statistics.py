@@ -111,6 +111,21 @@ class Sector(NamedTuple):
     kappa: Mean
     pieces: Mean
 
+    @property
+    def row(self) -> tuple[float, float, int, float, float, float, float, float, float]:
+        """For tables: rays [deg], trials; means and standard deviations of twist [deg], kappa, pieces."""
+        return (
+            math.degrees(self.low),
+            math.degrees(self.high),
+            self.pieces.n,
+            math.degrees(self.twist.value),
+            math.degrees(self.twist.deviation),
+            self.kappa.value,
+            self.kappa.deviation,
+            self.pieces.value,
+            self.pieces.deviation,
+        )
+
 
 def sector_angle(twist: ArrayLike, kappa: ArrayLike, rod: Rod, rays: Rays = "ellipse") -> Floats:
     """Angle [rad] of trials in the plane of twist and limit curvature, 0 without bending, pi/2 without twist.

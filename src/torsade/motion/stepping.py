@@ -159,6 +159,30 @@ def _judge(
     return ratio, REACHED
 
 
+def _evaluate(
+    job: Index,
+    a: Assembly,
+    m: Model,
+    bc: Boundary,
+    state: State,
+    near: Near,
+    factor: Factor | tuple[()],
+    control: Control,
+    dt: float,
+    stages: Index,
+    g: Stages,
+) -> tuple[int, Factor | tuple[()]]:
+    """Do a job, with a new factor whenever the old one will not do; its status, and the factor."""
+    status, resumed = STALE, False
+    while status == STALE:
+        status = evaluate(job, resumed, a, m, bc, state, near.contacts, factor, control, dt, stages, g)
+        resumed = status == STALE
+        if resumed:
+            factor = renewed(factor, a, near.contacts, g.work.mid, m.diameter)
+            status = STALE if usable(factor) else DENSE
+    return status, factor
+
+
 def _adapt(tried: float, dt: float, ratio: float, growth: float, clock: Clock) -> None:
     """Choose the next step from the error of the last; a step cut short may not shorten it."""
     proposal = dt * min(growth, max(0.2, 0.8 * max(ratio, 1e-9) ** (-1.0 / 3.0)))
@@ -206,13 +230,7 @@ def advance(
         if job == STEP:
             tried, last = _next_step(control, clock, until)
             stages, dt = stages_for(tried, clock.time[4]) if adaptive else (ONE_STAGE, tried)
-        status, resumed = STALE, False
-        while status == STALE:
-            status = evaluate(job, resumed, a, m, bc, state, near.contacts, factor, control, dt, stages, g)
-            resumed = status == STALE
-            if resumed:
-                factor = renewed(factor, a, near.contacts, g.work.mid, m.diameter)
-                status = STALE if usable(factor) else DENSE
+        status, factor = _evaluate(job, a, m, bc, state, near, factor, control, dt, stages, g)
         clock.count[2] += int(g.estimate[1])
         if status == DENSE or (job == START and status != OK):
             verdict = _verdict(status)
@@ -249,4 +267,8 @@ def advance(
     return verdict
 
 
-compile_kernels(__name__, splice=("_judge", "_find_near"), owning=("_judge", "_find_near", "advance"))
+compile_kernels(
+    __name__,
+    splice=("_judge", "_find_near", "_evaluate"),
+    owning=("_judge", "_find_near", "_evaluate", "advance"),
+)
