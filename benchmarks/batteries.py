@@ -14,14 +14,12 @@ import numpy as np
 
 from benchmarks import common
 from torsade.errors import TorsadeError
+from torsade.figures.battery_map import KNOTS, SHARES
 from torsade.knots.likeness import likeness
 from torsade.knots.loops import tight_loop
 from torsade.protocols.battery import NODES_PER_RADIUS, Battery
 
 PAGE = Path(__file__).parents[1] / "docs" / "batteries.md"
-
-KNOTS = ("3_1", "4_1", "5_1", "5_2", "6_1", "6_2", "6_3", *(f"7_{k}" for k in range(1, 8)))
-"""The prime knots through 7 crossings."""
 
 STUDIED = (("3_1", 0.0), ("4_1", 0.0), ("7_4", 0.0), ("3_1", 2.0), ("4_1", 2.0), ("7_4", 2.0), ("4_1", 4.0))
 """Knots and twist densities that are refined."""
@@ -32,7 +30,6 @@ PLACES = 8
 """Where batteries are cut whose times are compared whatever the cut, evenly along the fiber."""
 
 MIRROR = np.array([1.0, 1.0, -1.0])
-SHARES = ("50", "10", "1")
 QUICK: Mapping[str, Any] = {"duration": "0.2 s", "charging": "0.5 s", "nodes": 60}
 
 Found = dict[str, Any]

@@ -1,11 +1,11 @@
-"""Sutures: what six knots do to the skin, how far it moves under refinement, and what it depends on.
+"""Sutures: what six knots do to the skin, how far it moves under refinement, what it depends on, what holds.
 
 Writes its tables into docs/sutures.md, between marks, unless `--no-write` is given.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -55,6 +55,11 @@ STUDIED: Mapping[str, Options] = {
     "eta_f = eta": {"eta_f_ratio": 1.0},
 }
 
+LET_GO: Mapping[str, Options] = {
+    "drag alone": {"release": 1.0},
+    "friction 0.3": {"release": 1.0, "friction": 0.3},
+}
+
 
 def reports(options: Options) -> list[Found]:
     """The report of every knot; why there is none, where a run fails."""
@@ -77,9 +82,14 @@ def study(variants: Mapping[str, Options], short: Options) -> dict[str, list[Fou
     return {name: reports({**options, **short}) for name, options in variants.items()}
 
 
-def displacement(report: Found, key: str) -> float | None:
-    """Of side a along z [um], at the end of the pull or where it was largest."""
-    return None if "failed" in report else 1e6 * report[key]["a"]
+def displacement(key: str) -> Callable[[Found], float | None]:
+    """Of side a along z [um], at the end of the pull or where it was largest; None where a run failed."""
+    return lambda report: None if "failed" in report else 1e6 * report[key]["a"]
+
+
+def number(key: str, unit: float = 1.0) -> Callable[[Found], float | None]:
+    """What a report has under a key, in a unit; None where there is none."""
+    return lambda report: None if report.get(key) is None else report[key] / unit
 
 
 def six_table(found: Sequence[Found]) -> str:
@@ -101,16 +111,29 @@ def six_table(found: Sequence[Found]) -> str:
     return common.table(heads, rows)
 
 
-def study_table(found: Mapping[str, list[Found]], key: str, ordered: bool) -> str:
-    """Displacement of side a [µm] for every knot in every variant; whether the order is the thesis's."""
+def study_table(
+    found: Mapping[str, list[Found]], value: Callable[[Found], float | None], ordered: bool = False
+) -> str:
+    """A number of every knot in every variant; ordered, whether displacements are in the thesis's order."""
     heads = ["", *SIX]
     if ordered:
         heads.append("least of one hand / largest of two")
     rows = []
     for name, reported in found.items():
-        z = [displacement(r, key) for r in reported]
-        rows.append([name, *z, *([separation(z)] if ordered else [])])
+        values = [value(r) for r in reported]
+        rows.append([name, *values, *([separation(values)] if ordered else [])])
     return common.table(heads, rows)
+
+
+def let_go_table(found: Mapping[str, list[Found]]) -> str:
+    """Gaps [mm] when the ends are let go, and a second later."""
+    moments = {"gap_m": "at the end of the pull", "gap_after_release_m": "1 s later"}
+    rows = [
+        [f"{name}, {when}", *(number(key, 1e-3)(r) for r in reported)]
+        for name, reported in found.items()
+        for key, when in moments.items()
+    ]
+    return common.table(["", *SIX], rows)
 
 
 def separation(z: Sequence[float | None]) -> float | None:
@@ -133,17 +156,22 @@ def main(arguments: list[str] | None = None) -> dict[str, Any]:
     studied = {"as it is": refined["as it is"]}
     if not given.quick:
         studied |= study({name: o for name, o in STUDIED.items() if o}, short)
+    let_go = study(LET_GO if not given.quick else {"drag alone": {"release": 0.05}}, short)
     tables = {
         "six": six_table([r for r in refined["as it is"] if "failed" not in r]),
-        "refined": study_table(refined, "z_displacement_m", ordered=False),
-        "refined-largest": study_table(refined, "z_peak_m", ordered=False),
-        "studied": study_table(studied, "z_displacement_m", ordered=True),
-        "studied-largest": study_table(studied, "z_peak_m", ordered=True),
+        "refined": study_table(refined, displacement("z_displacement_m")),
+        "refined-largest": study_table(refined, displacement("z_peak_m")),
+        "refined-friction": study_table(refined, number("c_f")),
+        "studied": study_table(studied, displacement("z_displacement_m"), ordered=True),
+        "studied-largest": study_table(studied, displacement("z_peak_m"), ordered=True),
+        "let-go": let_go_table(let_go),
     }
     if not (given.quick or given.no_write):
         for name, text in tables.items():
             common.put(text, PAGE, f"sutures-{name}")
-    return common.show({"refined": refined, "studied": studied}, list(tables.values()), given.json)
+    return common.show(
+        {"refined": refined, "studied": studied, "let_go": let_go}, list(tables.values()), given.json
+    )
 
 
 if __name__ == "__main__":

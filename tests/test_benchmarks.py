@@ -9,6 +9,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
 import pytest
 
 ROOT = Path(__file__).parents[1]
@@ -74,6 +75,16 @@ def test_quick_mode_finds_finite_numbers(script: Any, name: str, capsys: pytest.
     values = numbers(found)
     assert values
     assert all(math.isfinite(x) for x in values)
+
+
+@pytest.mark.parametrize("q", [2, 4])
+def test_random_curves_are_their_own_mirror_images(script: Any, q: int) -> None:
+    """x(s + L/q) = Q x(s), which the mean over images leaves as it is, and Q reflects."""
+    symmetric = script("symmetric")
+    x = symmetric.random_curve(np.random.default_rng(0), q)
+    np.testing.assert_allclose(np.roll(x, -len(x) // q, axis=0), x @ symmetric.MAPS[q].T, atol=1e-12)
+    np.testing.assert_allclose(symmetric.symmetric(x, q), x, atol=1e-12)
+    assert np.linalg.det(symmetric.MAPS[q]) == pytest.approx(-1.0)
 
 
 def test_a_table_is_printed_without_json(script: Any, capsys: pytest.CaptureFixture[str]) -> None:

@@ -35,6 +35,7 @@ def refusal(*arguments: str, cwd: Path | None = None) -> str:
 
 
 BEND = ("run", "prison-escape")
+SUTURE = ("run", "suture")
 MOVE = ("run", "reidemeister", "--move")
 ARCH = ("run", "bend-twist")
 
@@ -49,6 +50,16 @@ ARCH = ("run", "bend-twist")
         ((*BEND, "--knot", "reef", "--force", "15", "N"), "quote values with units"),
         ((*BEND, "--knot", "reef", "--preset", "publishd"), "did you mean 'published'?"),
         ((*BEND, "reef"), "did you mean --knot reef?"),
+        ((*SUTURE, "5,-3"), "did you mean --throws '5,-3'?"),
+        ((*SUTURE, "--throws", "0"), "'0' is not two numbers; give half turns such as 5,-3"),
+        ((*SUTURE, "--throws", "3,,"), "is not two numbers"),
+        ((*SUTURE, "--throws", "2.5"), "is not two numbers"),
+        ((*SUTURE, "--throws", "99,99"), "give 15 at most"),
+        ((*SUTURE,), "throws is missing; give a pair of odd numbers"),
+        ((*SUTURE, "--throws", "3,-3", "--skin-stiffness", "-3 N/m"), "give a stiffness above 0 N/m"),
+        ((*SUTURE, "--throws", "3,-3", "--out", "no/such/wound.zarr"), "there is no folder"),
+        (("run", "pendulum", "270"), "'270' belongs to no option"),
+        ((*MOVE[:2], "R2"), "did you mean --move R2?"),
         ((*BEND, "--knot", "reef", "--rho", "1"), "has no inertia"),
         ((*BEND, "--knot", "reff"), "did you mean 'reef'?"),
         (

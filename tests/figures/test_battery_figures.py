@@ -17,7 +17,7 @@ from torsade.cli import figure as command
 from torsade.errors import TorsadeError
 from torsade.figures import figure
 from torsade.figures.base import Choice, Table
-from torsade.figures.battery_map import KNOTS, PEAK, SIGNIFICANT, TWISTS, design, slow
+from torsade.figures.battery_map import KNOTS, PEAK, SIGNIFICANT, TWISTS, design, slow, split
 from torsade.figures.runs import results
 from torsade.sweep import Catalogue, Sweep, run
 
@@ -69,6 +69,23 @@ def test_what_did_not_get_there_is_not_resonant() -> None:
     found = slow({"knot": np.arange(6), "twist_density": twist, "T10_T0": times})
     assert not found.resonant[1]
     assert not found.peak.any()
+
+
+def test_what_failed_takes_no_part_in_medians() -> None:
+    """And where all failed there are none, without a warning."""
+    twist = np.repeat([0.0, 2.0, 3.0], 3)
+    energy = {"bend": np.tile([3.0, 4.0, 5.0], 3), "twist": np.tile([0.0, 8.0, 9.0], 3)}
+    energy |= {"stretch": np.ones(9), "contact": np.zeros(9)}
+    failed = np.array([0, 0, 0, 0, 0, 1, 1, 1, 1], bool)
+    numbers = {f"{kind}_E0": np.where(failed, np.nan, values) for kind, values in energy.items()}
+    numbers |= {"energy_E0": sum(numbers.values()), "twist_density": twist, "knot": np.tile([1, 2, 3], 3)}
+    numbers["T10_T0"] = np.where(failed, np.nan, np.arange(1.0, 10.0))
+    none, some, every = (dict(zip(split(numbers).columns, row, strict=True)) for row in split(numbers).rows)
+    assert (none["batteries"], none["twist_above_bend"]) == (3, pytest.approx(2 / 3))
+    assert (some["batteries"], some["twist_above_bend"], some["T10_median"]) == (3, 0.5, 4.5)
+    assert some["bend_share"] == pytest.approx((3 / 4 + 4 / 13) / 2)
+    assert all(np.isnan(value) for name, value in every.items() if name not in ("h_theta_prime", "batteries"))
+    assert not slow(numbers).resonant[failed].any()
 
 
 @pytest.fixture(scope="module")

@@ -5,15 +5,18 @@ from __future__ import annotations
 import itertools
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import torsade as ts
-from torsade.protocols import Battery
+from torsade.observables import hinge_twist
+from torsade.protocols import Battery, discharge
+from torsade.protocols.battery import KINDS
 from torsade.protocols.charging import trembled
-from torsade.protocols.discharge import crossing_losses, discharge_times, mean_on_the_way
+from torsade.protocols.discharge import crossing_losses, discharge_times, hinge_to_cut, mean_on_the_way
 from torsade.protocols.driving import Interrupted
 
 SHORT = Battery(knot="4_1", twist=1.0, nodes=60, charging="0.3 s", duration="0.3 s", frames=12)
@@ -140,6 +143,51 @@ def test_it_is_cut_where_asked() -> None:
     np.testing.assert_array_equal(x[:-1], np.roll(data["charge_position"].values[-1], -16, axis=0))
 
 
+def test_it_is_cut_where_the_stress_is_largest() -> None:
+    """√((|E ε| + E_b h κ)² + 3 (μ h θ')²), here from nodes and angles; of many as large the first counts."""
+    spec = SHORT.model_copy(update={"charging": 1e-2, "duration": 1e-5, "frames": 1})
+    motion, _ = spec.charged()
+    material, h, x = spec.fiber_material, spec.h, motion.state.x
+    e, l = np.roll(x, -1, axis=0) - x, spec.fiber_length / 60
+    size = np.linalg.norm(e, axis=1)
+    t = e / size[:, None]
+    before, mean = np.roll(t, 1, axis=0), 0.5 * (size + np.roll(size, 1))
+    half = 0.5 * np.arctan2(np.linalg.norm(np.cross(before, t), axis=1), (before * t).sum(axis=1))
+    normal = material.E * np.abs(mean / l - 1) + material.E_b * h * 2 * np.tan(half) / mean
+    theta_prime = hinge_twist(motion.assembly, motion.state) / l
+    stress = np.hypot(normal, math.sqrt(3) * material.mu * h * theta_prime)
+    assert np.ptp(stress) > 0.1 * stress.max()
+    assert spec.run().dataset.attrs["cut_at"] == pytest.approx(int(np.argmax(stress)) / 60)
+    even = Battery(knot="unknot", nodes=60, noise=0, twist=0.1)
+    assembly, state = even.tied()
+    assert hinge_to_cut(assembly, state, material, h) == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("knot", "twist"), [("3_1", 0.0), ("7_4", 1.0), ("6_2", -4.0)])
+def test_strands_that_hardly_moved_keep_the_name_they_would_get(
+    knot: str, twist: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Named anew in every frame or when a node has moved by 0.1 h, a strand is the same knots."""
+    spec = Battery(knot=knot, twist=twist)
+    named = discharge.name_open
+    asked: list[None] = []
+    monkeypatch.setattr(discharge, "name_open", lambda *given: asked.append(None) or named(*given))
+    sooner = spec.run().dataset.attrs["frame_knots"]
+    few = len(asked)
+    monkeypatch.setattr(discharge, "HARDLY", 0.0)
+    assert spec.run().dataset.attrs["frame_knots"] == sooner
+    assert len(asked) - few > few
+
+
+def test_every_number_is_explained(short) -> None:
+    """The table of keys on the page is that of `--json`."""
+    page = (Path(__file__).parents[2] / "docs" / "batteries.md").read_text(encoding="utf-8")
+    rows = page.split("| key | meaning |")[1].split("\n\n")[0].splitlines()[2:]
+    keys = [key for row in rows for key in re.findall(r"`(\w+)`", row.split(" | ")[0])]
+    assert sorted(keys) == sorted(Battery.report(short))
+
+
 def test_charged_is_where_it_stops() -> None:
     spec = Battery(knot="unknot", nodes=60, stop="charged", charging="0.1 s")
     result = spec.run()
@@ -147,6 +195,22 @@ def test_charged_is_where_it_stops() -> None:
     assert result.frames == 1
     assert set(report["discharge_time_T0"].values()) == {None}
     assert report["writhe"] == pytest.approx(0.0, abs=1e-3)
+
+
+@pytest.mark.parametrize("stop", ["charged", "discharged"])
+def test_the_energy_of_a_battery_is_that_of_the_closed_fiber(stop: str) -> None:
+    """With the hinge that is cut through, to the bit, as link, twist and writhe are; wherever it is cut."""
+    spec = Battery(knot="3_1", twist=2.0, nodes=60, charging="0.1 s", duration="1 ms", frames=4)
+    if stop == "charged":
+        spec = Battery(**{**spec.stored(), "stop": stop, "duration": None})
+    result = spec.run()
+    data, report = result.dataset, Battery.report(result)
+    energies = {kind: float(data[f"charge_energy_{kind}"][-1]) / report["E0_J"] for kind in KINDS}
+    assert report["energy_E0"] == energies | {"total": sum(energies.values())}
+    for name in ("link", "twist", "writhe"):
+        assert report[name] == data[f"charge_{name}"][-1]
+    if stop == "charged":
+        assert report["energy_final_E0"] == report["energy_E0"]["total"]
 
 
 def test_a_trefoil_is_untied() -> None:
@@ -191,6 +255,32 @@ def test_an_interrupted_run_goes_on_to_the_same_bits(tmp_path: Path) -> None:
     for name, value in whole.dataset.attrs.items():
         if name not in ("created", "wall_s", "resumed"):
             assert resumed.dataset.attrs[name] == value, name
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_a_discharge_goes_on_to_the_same_bits(before: bool) -> None:
+    """Before its ends have come apart and after, when they may touch."""
+    spec = Battery(knot="3_1", twist=3.0, nodes=60, charging="0.05 s", duration="10 ms", frames=12)
+    whole, again = (spec.trial() for _ in range(2))
+    times = iter(np.geomspace(1e-5, 1e-2, 30).tolist())
+    met = [bool(whole.motion.saved()["apart"])]
+    while len(met) < 2 or met[-1] == before:
+        whole.motion.advance(next(times))
+        whole.frame()
+        met.append(bool(whole.motion.saved()["apart"]))
+    again.motion.recover(whole.motion.saved())
+    assert again.motion.knots == whole.motion.knots
+    for t in times:
+        for trial in (whole, again):
+            trial.motion.advance(t)
+            trial.frame()
+    found, expected = again.motion.saved(), whole.motion.saved()
+    assert expected["apart"]
+    for name, values in expected.items():
+        np.testing.assert_array_equal(found[name], values, err_msg=name)
+    for name in ("named", "x"):
+        with pytest.raises(ValueError, match=name):
+            again.motion.recover(expected | {name: expected[name][1:]})
 
 
 def test_discharge_times_are_read_between_samples_for_good() -> None:

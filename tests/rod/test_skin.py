@@ -7,7 +7,9 @@ import pytest
 
 from rod.helpers import Probe, gradient, midpoints, random_strand, toy_model
 from torsade.assembly import assemble, initial_state
+from torsade.errors import TorsadeError
 from torsade.motion import ends
+from torsade.motion.overdamped import Motion, Stepping
 from torsade.motion.piercing import pierced
 from torsade.motion.wound import Tissue, tied_around
 from torsade.rod.contact import contact_pressure
@@ -195,3 +197,30 @@ def test_no_cylinder_goes_into_the_other():
         after = state.x.copy()
         after[2, 0] += step
         assert (pierced(a, bc.skin, state.x, after)[0] >= 0) == hit
+
+
+@pytest.mark.parametrize(
+    ("count", "ground", "asked"), [(0, 1.0, "1 to 3"), (4, 1.0, "1 to 3"), (2, 0.0, "above 0")]
+)
+def test_no_more_cylinders_than_are_solved_for(count, ground, asked):
+    """A fourth would be written beyond the rows that hold its response; without drag nothing balances one."""
+    x = np.array([[5.0, 0, 0], [5.0, 1.0, 0]])
+    a = assemble([x])
+    axes = np.arange(count)[:, None] * [3 * H_S, 0.0, 0.0]
+    with pytest.raises(TorsadeError, match=asked):
+        tied_around(a, initial_state(a, [x]), ends.free(a), axes, Tissue(H_S, 1.0, ground))
+
+
+def test_skin_alone_goes_back_to_rest():
+    """Displaced by d and touched by nothing, w - w_0 = d exp(-k_s t/zeta), along z as across it."""
+    x = np.array([[5.0, 0, 0], [5.0, 0.1, 0], [5.0, 0.2, 0]])
+    a = assemble([x])
+    a, state, bc = tied_around(
+        a, initial_state(a, [x]), ends.free(a), np.zeros((1, 3)), Tissue(H_S, 3.0, 0.7)
+    )
+    away = 0.1 * H * np.array([1.0, -2.0, 3.0])
+    state.x[3] += away
+    motion = Motion(a, toy_model(H), bc, state, Stepping(tolerance=1e-6))
+    motion.advance(0.5)
+    assert motion.state.x[3] == pytest.approx(away * np.exp(-0.5 * 3.0 / 0.7), rel=1e-3)
+    assert motion.dissipation == pytest.approx(1.5 * away @ away * (1 - np.exp(-3.0 / 0.7)), rel=1e-3)

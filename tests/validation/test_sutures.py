@@ -14,6 +14,7 @@ from torsade.motion import ends
 from torsade.motion.overdamped import Laws, Motion, Outcome, Stepping, model
 from torsade.motion.wound import Tissue, measure_skin, tied_around
 from torsade.protocols import Suture
+from torsade.rod.skin import SETTLED, weigh_skin
 
 FIBER = preset("optomechanical")
 H, H_S = FIBER.radius, 10 * FIBER.radius
@@ -101,6 +102,20 @@ def test_work_is_stored_or_dissipated(friction):
     missing = data["external_work"] - data["dissipation"] - (stored - stored[0])
     assert float(abs(missing).max()) < 5e-3 * float(data["external_work"][-1])
     assert bool((data["dissipation"].diff("time") >= 0).all())
+
+
+@pytest.mark.parametrize("friction", [0.3, 1.0])
+def test_dry_friction_agrees_with_the_velocities(friction):
+    """At every stop the velocities solved for are those by which the friction was weighed."""
+    trial = Suture(throws="3,3", friction=friction).trial()
+    motion, touching = trial.motion, 0
+    skin = motion.boundary.skin
+    for until in np.linspace(0.02, 0.6, 30):
+        while motion.advance(until) is Outcome.SLIPPED:
+            assert trial.catch(until) is Outcome.PAUSED
+        touching += int(skin.count[0])
+        assert weigh_skin(motion.assembly, motion.model, skin, motion.state.v) < SETTLED
+    assert touching > 1000
 
 
 def test_let_go_energy_falls():

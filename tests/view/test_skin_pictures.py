@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from torsade.errors import TorsadeError
 from torsade.protocols import Suture
 from torsade.view.plots import plot_wound
 from torsade.view.scene import picture, render_result
@@ -57,3 +58,9 @@ def test_something_is_drawn(data, tmp_path: Path, draw) -> None:
     imread = pytest.importorskip("matplotlib.image").imread
     image = imread(draw(data, tmp_path / "a.png"))[:, :, :3]
     assert 0.005 < (image.min(axis=2) < 0.9).mean() < 0.9
+
+
+@pytest.mark.parametrize("model", ["{}", "3", '{"skin_radius": "x"}', '{"skin_radius": -1}', "{"])
+def test_skin_of_no_thickness_is_refused(data, model: str) -> None:
+    with pytest.raises(TorsadeError, match="how thick"):
+        skin_at(data.assign_attrs(model=model), 0)

@@ -163,10 +163,7 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
     if kind == "UnknownCommandError" or (kind == "UnusedCliTokensError" and arguments[:1] != ["run"]):
         return _unknown_command(unused[0] if unused else arguments[0], arguments)
     if kind == "UnusedCliTokensError":
-        if unused[0] in arguments[2:3]:
-            from torsade.files import SUFFIXES
-
-            option = "--centerline" if unused[0].lower().endswith(SUFFIXES) else "--knot"
+        if unused[0] in arguments[2:3] and (option := _meant(unused[0], arguments[1])):
             return f"{quoted(unused[0])} comes without its option; did you mean {option} {shown(unused[0])}?"
         return (
             f"{quoted(unused[0])} belongs to no option; give every value after its option, and quote values "
@@ -179,6 +176,19 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
         return f"{token or 'an option'} is given more than once; give it once"
     text = " ".join(str(error).split()).rstrip(".")
     return text.replace(". ", "; ") + "; see torsade --help"
+
+
+def _meant(word: str, protocol: str) -> str | None:
+    """The option that a word alone after a protocol belongs to: what the protocol cannot do without."""
+    from torsade.cli.app import flag
+    from torsade.files import SUFFIXES
+    from torsade.protocols.files import PROTOCOLS
+
+    fields = PROTOCOLS[protocol].model_fields if protocol in PROTOCOLS else {}
+    needed = [name for name, field in fields.items() if field.is_required() and name != "protocol"]
+    if word.lower().endswith(SUFFIXES):
+        needed.insert(0, "centerline")
+    return next((flag(name) for name in (*needed, "knot") if name in fields), None)
 
 
 def shown(word: str) -> str:

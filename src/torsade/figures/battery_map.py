@@ -9,7 +9,8 @@ factor `PEAK` or more.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -18,11 +19,12 @@ from numpy.typing import NDArray
 from torsade.arrays import Bools, Floats
 from torsade.figures.base import Cell, Choice, Swept, Table
 from torsade.figures.ranking import agreement
+from torsade.protocols import battery
 
 if TYPE_CHECKING:
     from torsade.sweep import Catalogue, Sweep
 
-__all__ = ["KNOTS", "SHARES", "SWEPT", "TWISTS", "Slow", "causes", "design", "slow", "split"]
+__all__ = ["KNOTS", "SWEPT", "TWISTS", "Slow", "causes", "design", "label", "of_known", "slow", "split"]
 
 KNOTS = ("3_1", "4_1", "5_1", "5_2", "6_1", "6_2", "6_3", *(f"7_{k}" for k in range(1, 8)))
 """The prime knots through 7 crossings."""
@@ -30,10 +32,7 @@ KNOTS = ("3_1", "4_1", "5_1", "5_2", "6_1", "6_2", "6_3", *(f"7_{k}" for k in ra
 TWISTS = tuple(-4 + 0.5 * k for k in range(17))
 """Twist densities h theta' at the start."""
 
-SHARES = ("50", "10", "1")
-"""Per cents of the energy at the cut."""
-
-KINDS = ("bend", "twist", "stretch", "contact")
+KINDS, SHARES = battery.KINDS, tuple(map(str, battery.SHARES))
 
 SIGNIFICANT = 3.0
 WASHED_OUT = 1.0
@@ -41,6 +40,11 @@ PEAK = 1.25
 
 QUICK: Mapping[str, Any] = {"nodes": 60, "charging": "0.5 s", "duration": "1 s", "frames": 8}
 QUICK_KNOTS, QUICK_TWISTS = ("3_1", "4_1", "5_1", "7_4"), (-3.0, -1.5, 0.0, 1.5, 3.0)
+
+
+def label(knot: str, twist: float) -> str:
+    """Name of the run of a battery that figures show."""
+    return f"battery {knot} twist {twist:g}"
 
 
 def design(choice: Choice) -> Sweep:
@@ -95,7 +99,7 @@ class Slow(NamedTuple):
     ----------
     slowness : discharge time to 10 % over the median at that |h theta'|, shape (n,)
     resonant : whether it is significantly slow
-    peak : whether both neighbours along the twist are significantly shorter
+    peak : whether both neighbours along the twist are shorter by the factor `PEAK` or more
     least : slowness of a resonant battery, at least
     """
 
@@ -105,14 +109,20 @@ class Slow(NamedTuple):
     least: float
 
 
+def of_known(f: Callable[[Floats], Any], values: Floats) -> float:
+    """f of those values that are finite; NaN where none is: what failed or never got there has none."""
+    known = values[np.isfinite(values)]
+    return float(f(known)) if len(known) else math.nan
+
+
 def slow(numbers: Mapping[str, NDArray[Any]], share: str = "10") -> Slow:
     """Which batteries discharge slowly to so many per cent; those that do not get there are not."""
     log = np.log(np.asarray(numbers[f"T{share}_T0"], np.float64))
     size = np.abs(np.asarray(numbers["twist_density"], np.float64))
-    middle = np.array([np.nanmedian(log[size == s]) for s in size])
+    medians = {s: of_known(np.median, log[size == s]) for s in np.unique(size)}
+    middle = np.array([medians[s] for s in size])
     beyond = log - middle
-    left = np.abs(beyond[size > WASHED_OUT])
-    least = SIGNIFICANT * 1.4826 * float(np.nanmedian(left))
+    least = SIGNIFICANT * 1.4826 * of_known(np.median, np.abs(beyond[size > WASHED_OUT]))
     peak = np.zeros(len(log), bool)
     for knot in dict.fromkeys(numbers["knot"]):
         own = np.flatnonzero(numbers["knot"] == knot)
@@ -124,16 +134,20 @@ def slow(numbers: Mapping[str, NDArray[Any]], share: str = "10") -> Slow:
 
 
 def split(numbers: Mapping[str, NDArray[Any]]) -> Table:
-    """Medians and extremes over knots, at each |h theta'|, of shares of energy at the cut and of times."""
+    """Medians and extremes over knots, at each |h theta'|, of shares of energy at the cut and of times.
+
+    Batteries that failed are counted in `batteries` and nowhere else.
+    """
     size = np.abs(numbers["twist_density"])
     total = numbers["energy_E0"]
     rows: list[tuple[Cell, ...]] = []
     for s in np.unique(size):
         here = size == s
-        shares = [float(np.median(numbers[f"{kind}_E0"][here] / total[here])) for kind in KINDS]
-        more = float(np.mean(numbers["twist_E0"][here] > numbers["bend_E0"][here]))
+        shares = [of_known(np.median, numbers[f"{kind}_E0"][here] / total[here]) for kind in KINDS]
+        ratio = numbers["twist_E0"][here] / numbers["bend_E0"][here]
+        more = of_known(lambda known: np.mean(known > 1), ratio)
         times = numbers["T10_T0"][here]
-        spread = [float(f(times)) for f in (np.nanmin, np.nanmedian, np.nanmax)]
+        spread = [of_known(f, times) for f in (np.min, np.median, np.max)]
         rows.append((float(s), int(here.sum()), *shares, more, *spread))
     kinds = tuple(f"{kind}_share" for kind in KINDS)
     heads = ("h_theta_prime", "batteries", *kinds, "twist_above_bend", "T10_least", "T10_median", "T10_most")

@@ -15,10 +15,9 @@ import numpy as np
 
 from torsade.figures import panels
 from torsade.figures.base import Choice, Figure, Table
-from torsade.figures.battery_map import KINDS, KNOTS
+from torsade.figures.battery_map import KINDS, KNOTS, label
 from torsade.view._extra import require
-from torsade.view.battery import TOP, Shape, density_bar, name_knots, shapes
-from torsade.view.plots import ENERGIES
+from torsade.view.battery import TOP, Shape, density_bar, energy_lines, name_knots, shapes, time_axis
 from torsade.view.scene import picture
 
 if TYPE_CHECKING:
@@ -30,7 +29,7 @@ __all__ = ["FIGURE"]
 KNOT, TWIST = "7_4", 1.0
 """The battery of panels B and C."""
 
-LABEL = f"battery {KNOT} twist {TWIST:g}"
+LABEL = label(KNOT, TWIST)
 
 SHARES = (0.9, 0.5, 0.1, 0.01)
 """Of the energy at the cut, at which panel B shows it."""
@@ -118,15 +117,11 @@ def _draw_energies(figure: Any, table: Table) -> None:
     cut = np.asarray(table.column("cut"), bool)
     time = np.asarray(table.column("time_T0"), np.float64)
     kinds = {kind: np.asarray(table.column(f"{kind}_E0"), np.float64) for kind in KINDS}
-    total = np.sum(list(kinds.values()), axis=0)
+    most = []
     for side, where in zip(axes.T, (~cut, cut), strict=True):
-        t = time[where]
-        side[0].plot(t, total[where], color=panels.INK, label="all")
-        for kind, values in kinds.items():
-            side[0].plot(t, values[where], color=ENERGIES[kind], linewidth=1.0, label=kind)
-        side[0].set(yscale="log", ylim=(5e-4 * total[cut].max(), 2 * total.max()))
-        side[1].set_xscale("symlog", linthresh=float(t[1]), linscale=0.3)
-        side[1].set_xlim(0, t[-1])
+        most.append(energy_lines(side[0], time[where], {kind: kinds[kind][where] for kind in kinds}))
+        time_axis(side[1], time[where])
+    axes[0, 0].set_ylim(5e-4 * most[1], 2 * max(most))
     writhe = np.asarray(table.column("writhe"), np.float64)
     crossings = np.asarray([np.nan if c is None else c for c in table.column("crossings")], np.float64)
     names = table.column("knot")

@@ -6,8 +6,6 @@ along the trefoil at either twist, from where it is largest on.
 
 from __future__ import annotations
 
-import json
-import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,8 +15,10 @@ import numpy as np
 from torsade.arrays import Floats
 from torsade.figures import panels
 from torsade.figures.base import Choice, Figure, Table
+from torsade.figures.battery_map import KINDS, label
+from torsade.protocols.battery import Battery, even_twist_energy
 from torsade.view._extra import require
-from torsade.view.battery import density_bar, density_colour
+from torsade.view.battery import density_bar, density_colour, density_unit
 from torsade.view.scene import picture
 
 if TYPE_CHECKING:
@@ -34,21 +34,13 @@ TWISTS = (-2.0, -1.0, 0.0, 1.0, 2.0)
 ALONG = {-2.0: "#c9543f", 2.0: "#2f6fa8"}
 """Of the profiles of panel B, and their colours."""
 
-KINDS = ("bend", "twist", "stretch", "contact")
-
-
-def _label(knot: str, twist: float) -> str:
-    return f"battery {knot} twist {twist:g}"
-
 
 def runs(choice: Choice) -> Mapping[str, Spec]:
     """Batteries that are charged and not cut."""
-    from torsade.protocols.battery import Battery
-
     # With twice the nodes of other batteries fewer shapes are held that are not stable.
     options = {"nodes": 60, "charging": "0.3 s"} if choice.quick else {"nodes": 200}
     return {
-        _label(knot, twist): Battery(knot=knot, twist=twist, stop="charged", **options)
+        label(knot, twist): Battery(knot=knot, twist=twist, stop="charged", **options)
         for knot in KNOTS
         for twist in TWISTS
     }
@@ -60,11 +52,11 @@ def measure(results: Mapping[str, Result], choice: Choice) -> Mapping[str, Table
     rows = []
     for knot in KNOTS:
         for twist in TWISTS:
-            attrs = results[_label(knot, twist)].dataset.attrs
+            attrs = results[label(knot, twist)].dataset.attrs
             energies = attrs["energy_E0"]
             turns = (attrs[name] for name in ("link", "twist", "writhe"))
             rows.append((knot, twist, *turns, *(energies[kind] for kind in KINDS), energies["total"]))
-    profiles = {twist: _density(results[_label("3_1", twist)]) for twist in ALONG}
+    profiles = {twist: _density(results[label("3_1", twist)]) for twist in ALONG}
     places = np.arange(len(profiles[2.0])) / len(profiles[2.0])
     heads = ("s_over_L", *(f"density_at_{twist:+g}_Eb_h2" for twist in ALONG))
     shifted = [np.roll(values, -int(np.argmax(values))) for values in profiles.values()]
@@ -75,9 +67,7 @@ def measure(results: Mapping[str, Result], choice: Choice) -> Mapping[str, Table
 def _density(result: Result) -> Floats:
     """Energy per rest length along a charged battery [E_b h²], shape (n_nodes,)."""
     data = result.dataset
-    length = float(json.loads(data.attrs["model"])["fiber_length"])
-    density = np.asarray(data["charge_energy_density"].values[-1], np.float64)
-    return np.asarray(density * length / float(data.attrs["E0_J"]))
+    return np.asarray(data["charge_energy_density"].values[-1], np.float64) / density_unit(data)
 
 
 def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Choice, path: Path) -> None:
@@ -89,7 +79,7 @@ def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Cho
         axes = upper.subplots(len(KNOTS), len(TWISTS))
         for row, knot in zip(axes, KNOTS, strict=True):
             for axis, twist in zip(row, TWISTS, strict=True):
-                result = results[_label(knot, twist)]
+                result = results[label(knot, twist)]
                 x = np.asarray(result.dataset["charge_position"].values[-1], np.float64)
                 image = picture(
                     [x], True, float(result.dataset.attrs["radius"]), values=[_density(result) / top],
@@ -106,7 +96,7 @@ def draw(results: Mapping[str, Result], tables: Mapping[str, Table], choice: Cho
         for twist, colour in ALONG.items():
             values = tables["density"].column(f"density_at_{twist:+g}_Eb_h2")
             below.plot(s, np.asarray(values, np.float64), color=colour, label=rf"$h\theta' = {twist:+g}$")
-        even = math.pi / (8 * 1.3) * max(TWISTS) ** 2
+        even = even_twist_energy(max(TWISTS), Battery(knot="3_1").fiber_material.nu)
         below.axhline(even, color=panels.MUTED, linewidth=0.8, linestyle=(0, (4, 2)), label="even twist")
         below.set(xlabel="s/L, from the largest on", ylabel=r"energy per length ($E_b h^2$)")
         below.margins(x=0.0)

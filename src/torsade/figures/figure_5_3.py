@@ -15,8 +15,10 @@ import numpy as np
 from torsade.arrays import Floats
 from torsade.figures import battery_map, panels
 from torsade.figures.base import Choice, Figure, Table
+from torsade.figures.battery_map import label
+from torsade.protocols.battery import Battery, even_twist_energy
 from torsade.view._extra import require
-from torsade.view.battery import TOP, density_bar, shapes
+from torsade.view.battery import SHARES, TOP, density_bar, shapes
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
@@ -30,23 +32,16 @@ PICTURED = (("3_1", 0.0), ("7_4", 0.0), ("7_4", 3.0))
 FOLLOWED = (("3_1", 0.0), ("4_1", 0.0), ("7_4", 0.0), ("3_1", 3.0), ("7_4", 3.0))
 """Of panel C."""
 
-SHARES = (0.5, 0.1, 0.01)
 MARKED = {"3_1": "#c9543f", "5_1": "#d99b2b", "4_1": "#2f6fa8", "7_4": "#3c8c5a"}
 """Knots whose lines have a colour of their own."""
 
 PALETTE = "YlGnBu"
 
 
-def _label(knot: str, twist: float) -> str:
-    return f"battery {knot} twist {twist:g}"
-
-
 def runs(choice: Choice) -> Mapping[str, Spec]:
     """Batteries that are drawn; the others of the map are numbers."""
-    from torsade.protocols.battery import Battery
-
     options: Mapping[str, Any] = battery_map.QUICK if choice.quick else {}
-    return {_label(knot, twist): Battery(knot=knot, twist=twist, **options) for knot, twist in FOLLOWED}
+    return {label(knot, twist): Battery(knot=knot, twist=twist, **options) for knot, twist in FOLLOWED}
 
 
 def measure(results: Mapping[str, Result], choice: Choice) -> Mapping[str, Table]:
@@ -54,7 +49,7 @@ def measure(results: Mapping[str, Result], choice: Choice) -> Mapping[str, Table
     columns = ("knot", "twist_density", "time_T0", "energy_share")
     rows = []
     for knot, twist in FOLLOWED:
-        data = results[_label(knot, twist)].dataset
+        data = results[label(knot, twist)].dataset
         energy = np.asarray(data["sample_energy"].values, np.float64)
         time = np.asarray(data["sample_time"].values, np.float64) / data.attrs["T0_s"]
         rows += [(knot, twist, float(t), float(e)) for t, e in zip(time, energy / energy[0], strict=True)]
@@ -84,7 +79,7 @@ def _draw_shapes(figure: Any, results: Mapping[str, Result]) -> None:
     """Panel A, a row for every battery, each with its own colour bar."""
     axes = figure.subplots(len(PICTURED), 1 + len(SHARES), squeeze=False)
     for k, (row, (knot, twist)) in enumerate(zip(axes, PICTURED, strict=True)):
-        data = results[_label(knot, twist)].dataset
+        data = results[label(knot, twist)].dataset
         found = list(shapes(data, SHARES))
         top = float(np.quantile(found[0].density, TOP))
         for axis in row:
@@ -119,7 +114,8 @@ def _draw_energies(axes: Any, table: Table) -> None:
     for knot, values in zip(knots, energy, strict=True):
         axes.plot(twists, values, **_style(knot))
     fine = np.linspace(twists[0], twists[-1], 200)
-    axes.plot(fine, np.pi / (8 * 1.3) * fine**2, color=panels.INK, linewidth=0.8, linestyle=(0, (4, 2)),
+    even = [even_twist_energy(twist, Battery(knot=knots[0]).fiber_material.nu) for twist in fine]
+    axes.plot(fine, even, color=panels.INK, linewidth=0.8, linestyle=(0, (4, 2)),
               label="even twist alone")  # fmt: skip
     axes.set(
         xlabel=r"twist density $h\theta'$", ylabel="energy at the cut ($E_0$)", yscale="log", ylim=(2e-2, 8)
@@ -173,7 +169,8 @@ def _draw_times(axes: Any, table: Table) -> None:
     knots, twists, times = _grid(table, "T10_T0")
     for knot, values in zip(knots, times, strict=True):
         axes.plot(twists, values, **_style(knot))
-    axes.plot(twists, np.nanmedian(times, axis=0), color=panels.INK, linewidth=1.6, label="median", zorder=4)
+    medians = [battery_map.of_known(np.median, column) for column in times.T]
+    axes.plot(twists, medians, color=panels.INK, linewidth=1.6, label="median", zorder=4)
     axes.set(xlabel=r"twist density $h\theta'$", ylabel="time to 10 % ($T_0$)", yscale="log")
     axes.legend(frameon=False, fontsize=6.5, loc="upper left")
 

@@ -12,9 +12,10 @@ import numpy as np
 
 from torsade.arrays import Floats
 from torsade.assembly import Assembly, State, with_points
+from torsade.errors import TorsadeError
 from torsade.motion.ends import Boundary
 from torsade.motion.overdamped import Motion
-from torsade.rod.skin import Skin, skin_energy, skin_on, weigh_skin
+from torsade.rod.skin import MOST_CYLINDERS, Skin, skin_energy, skin_on, weigh_skin
 
 __all__ = ["SkinForces", "Tissue", "measure_skin", "tied_around"]
 
@@ -27,7 +28,7 @@ class Tissue:
     ----------
     radius : h_s [m]
     stiffness : of the spring that holds each, k_s [N/m]
-    ground : drag of each with the ground, zeta [N s/m]
+    ground : drag of each with the ground, zeta [N s/m], above 0: by it forces on the skin are balanced
     drag : collision drag of fiber on skin over that of fiber on fiber
     friction : coefficient of dry friction on skin
     slip_speed : v_0, far below which dry friction holds [m/s]
@@ -47,7 +48,16 @@ def tied_around(
     """Fibers with cylinders among them, at rest where their axes meet z = 0; axes (n_cylinders, 3) [m].
 
     Each cylinder is one node, after those of the fibers, and moves freely.
+
+    Raises
+    ------
+    TorsadeError
+        When there are more cylinders than can be solved for together, or nothing drags them.
     """
+    if not 1 <= len(axes) <= MOST_CYLINDERS:
+        raise TorsadeError(f"skin of {len(axes)} cylinders was asked for; give 1 to {MOST_CYLINDERS}")
+    if not tissue.ground > 0:
+        raise TorsadeError(f"the drag of skin with the ground is {tissue.ground:g} N s/m; give one above 0")
     count, n_nodes, n_fibers = len(axes), len(assembly.node_length), len(assembly.closed)
     skin = skin_on(
         len(assembly.edges),

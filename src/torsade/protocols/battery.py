@@ -22,7 +22,13 @@ if TYPE_CHECKING:
     from torsade.results import Result
     from torsade.rod.contact import Model
 
-__all__ = ["Battery"]
+__all__ = ["KINDS", "SHARES", "Battery", "even_twist_energy"]
+
+KINDS = ("bend", "twist", "stretch", "contact")
+"""Kinds of energy that a battery stores."""
+
+SHARES = (50, 10, 1)
+"""Per cents of the energy just after the cut, down to which discharge times are measured."""
 
 NODES_PER_RADIUS = 2
 """Of rest length, unless a number of nodes is given; see the study in docs/batteries.md."""
@@ -50,6 +56,14 @@ SAMPLES = 240
 """Evenly spaced in the logarithm of time."""
 
 SILENT: Progress = lambda share, note: None  # noqa: E731
+
+
+def even_twist_energy(twist: float, nu: float) -> float:
+    """Energy [E_0] of a fiber that is twisted evenly and does nothing else, pi/(8 (1 + nu)) (h theta')^2.
+
+    From (5.1) of the thesis; twist is h theta'.
+    """
+    return math.pi / (8 * (1 + nu)) * twist**2
 
 
 class Battery(Driven):
@@ -278,7 +292,7 @@ class Battery(Driven):
         cut = Discharge(a, closed.state, hinge, self.model(), material, section, self.stepping)
         fixed = {f"charge_{name}": (_dims(name), values) for name, values in charge.history.items()}
         place = float(a.rest_length[: a.hinges[hinge, 2]].sum() / a.fiber_length[0])
-        at_cut = {"steps": closed.steps, "place": place, **cut.energies()._asdict()}
+        at_cut = {"steps": closed.steps, "place": place, **closed.energies()._asdict()}
         units = Units(self.unit_time, self.unit_energy)
         return Trial(
             cut,

@@ -9,20 +9,16 @@ import numpy as np
 
 from torsade.arrays import Floats
 from torsade.knots.finding import interpret
+from torsade.protocols.battery import KINDS, SHARES
 from torsade.protocols.charging import Charge
 from torsade.protocols.discharge import Discharge, crossing_losses, discharge_times, mean_on_the_way
 from torsade.results import Result
 from torsade.topology.identify import identify
 
-__all__ = ["SHARES", "Units", "concluded", "reported"]
-
-SHARES = (50, 10, 1)
-"""Per cents of the energy at the cut, down to which discharge times are measured."""
+__all__ = ["Units", "concluded", "reported"]
 
 ON_THE_WAY = (0.5, 0.01)
 """Shares of the energy between which shapes are intermediate."""
-
-KINDS = ("bend", "twist", "stretch", "contact")
 
 
 class Units(NamedTuple):
@@ -46,15 +42,17 @@ def concluded(
     ----------
     units : of time and energy
     knot : that was asked for
-    samples : histories by name, shapes (n_samples,)
+    samples : histories by name, shapes (n_samples,); where nothing is cut, one sample
     charge : how it was charged
-    at_cut : place of the cut, steps before it, and energies by kind [J]
+    at_cut : place of the cut, as a share of the length; steps before it; and energies by kind [J], of the
+        fiber while it is still closed
     cut : the fiber after the cut
     """
     unit, history, energy = units.time, charge.history, samples["energy"]
     shares = discharge_times(samples["time"], energy, [share / 100 for share in SHARES])
     lost = crossing_losses(samples["time"], samples["fewest_crossings"])
     cut_energies = {kind: at_cut[kind] / units.energy for kind in KINDS}
+    total = sum(cut_energies.values())
     asked = str(identify(interpret(knot).diagram))
     return {
         "T0_s": unit,
@@ -66,8 +64,8 @@ def concluded(
         "charge_steps": int(at_cut["steps"]),
         "charged_in_T0": float(history["time"][-1]) / unit,
         "loss_per_T0": charge.loss,
-        "energy_E0": cut_energies | {"total": sum(cut_energies.values())},
-        "energy_final_E0": float(energy[-1]) / units.energy,
+        "energy_E0": cut_energies | {"total": total},
+        "energy_final_E0": float(energy[-1]) / units.energy if len(energy) > 1 else total,
         "cut_at": at_cut["place"],
         "discharge_time_T0": {
             str(share): None if t is None else t / unit for share, t in zip(SHARES, shares, strict=True)

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from torsade import observables
 from torsade.arrays import Floats
-from torsade.assembly import Assembly
 from torsade.material import Material, Section
 from torsade.motion.overdamped import Motion
 from torsade.stopping import STOPPING, Patience
@@ -46,7 +45,9 @@ class Charge(NamedTuple):
 
     Attributes
     ----------
-    history : recorded arrays by name, `charge_` before it left out, each with a row for every frame
+    history : recorded arrays by name, `charge_` before it left out, each with a row for every frame:
+        `time` [s], energies by kind [J], `twist`, `writhe` and `link` [turns], shapes (n_frames,);
+        `position` [m], shape (n_frames, n_nodes, 3); `energy_density` [J/m], shape (n_frames, n_nodes)
     knots : the knot identified in every frame
     loss : share of the energy lost in T_0, between the last two frames
     """
@@ -75,7 +76,23 @@ def charge(
     longest: float,
     tell: Callable[[float, str], None],
 ) -> Charge:
-    """Let a closed fiber relax until it is at rest, or for the longest time [s]; unit is T_0 [s]."""
+    """Let a closed fiber relax until it is at rest, or for the longest time [s].
+
+    Parameters
+    ----------
+    motion : a single closed fiber, which is moved
+    material, section : of the fiber, for its energy density
+    unit : T_0 [s]
+    longest : to wait for rest [s]; rest is not looked for before `EARLIEST` of it
+    tell : called with the share done, on the logarithm of time, and what is going on
+
+    Raises
+    ------
+    TorsadeError
+        When strands would pass through each other, or no step is short enough.
+    KeyboardInterrupt
+        On Ctrl-C or SIGTERM.
+    """
     frames = [_frame(motion, material, section)]
     names = [_knot(motion.state.x)]
     until, loss = FIRST * unit, math.inf
@@ -111,7 +128,7 @@ def _loss(before: dict[str, Floats | float], after: dict[str, Floats | float]) -
 
 def _frame(motion: Motion, material: Material, section: Section) -> dict[str, Floats | float]:
     assembly, state, energies = motion.assembly, motion.state, motion.energies()
-    Tw, Wr = turns(assembly, motion), writhe(state.x, True)
+    Tw, Wr = _turns(motion), writhe(state.x, True)
     return {
         "time": motion.time,
         "energy_stretch": energies.stretch,
@@ -126,9 +143,9 @@ def _frame(motion: Motion, material: Material, section: Section) -> dict[str, Fl
     }
 
 
-def turns(assembly: Assembly, motion: Motion) -> float:
+def _turns(motion: Motion) -> float:
     """Twist of a single fiber in turns."""
-    return float(observables.twist(assembly, motion.state)[0]) / (2 * math.pi)
+    return float(observables.twist(motion.assembly, motion.state)[0]) / (2 * math.pi)
 
 
 def _knot(x: Floats) -> str:

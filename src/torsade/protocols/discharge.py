@@ -15,7 +15,7 @@ from torsade.arrays import Floats
 from torsade.assembly import Assembly, State, opened, parted
 from torsade.material import Material, Section
 from torsade.motion import ends
-from torsade.motion.moving import Guided, Outcome
+from torsade.motion.moving import Guided, Outcome, check_saved
 from torsade.motion.overdamped import Energies, Motion, Stepping
 from torsade.rod.contact import Model
 from torsade.topology.fewest import fewest_crossings
@@ -191,11 +191,20 @@ class Discharge(Guided[Motion]):
     def saved(self) -> dict[str, NDArray[Any]]:
         """Copies of the arrays that decide how the motion goes on, by name, and the knots so far."""
         knots = np.frombuffer(json.dumps(self.knots).encode(), dtype=np.uint8)
-        own = {"knots": knots, "apart": np.array(self._apart), "named": self._named.copy()}
-        return self.motion.saved() | own
+        return self.motion.saved() | self._own() | {"knots": knots}
+
+    def _own(self) -> dict[str, NDArray[Any]]:
+        return {"apart": np.array(self._apart), "named": self._named.copy()}
 
     def recover(self, saved: Mapping[str, NDArray[Any]]) -> None:
-        """Go on from the arrays that `saved` gave."""
+        """Go on from the arrays that `saved` gave.
+
+        Raises
+        ------
+        ValueError
+            When they are not of this fiber.
+        """
+        check_saved({name: saved[name] for name in self._own()}, self._own())
         self.motion.recover(saved)
         self.knots = [(float(t), str(name)) for t, name in json.loads(saved["knots"].tobytes())]
         self._named = np.array(saved["named"])

@@ -16,6 +16,8 @@ from torsade.protocols.base import Driven, Positive, Trial
 from torsade.units import Length, Number, Time, Viscosity, Whole
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from torsade.arrays import Floats
     from torsade.assembly import Assembly, State
     from torsade.centerline import Centerline
@@ -86,9 +88,9 @@ class Experiment(NamedTuple):
     """
 
     boundary: Boundary
-    measure: Callable[[State], dict[str, float]]
-    derive: Callable[[Mapping[str, Floats]], dict[str, Floats]]
-    conclude: Callable[[Mapping[str, Floats], float | None], dict[str, float]]
+    measure: Callable[[State], dict[str, float]] = lambda state: {}
+    derive: Callable[[Mapping[str, Floats]], dict[str, Floats]] = lambda history: {}
+    conclude: Callable[[Mapping[str, Floats], float | None], dict[str, float]] = lambda history, loose_at: {}
     catch: Callable[[State], bool] = lambda state: False
     sampled: tuple[str, ...] = ()
     about: Mapping[str, str] = MappingProxyType({})
@@ -268,15 +270,8 @@ class Pulled(Driven):
             (*COMMON, *own),
             lambda: _frame(does, motion, self.h),
             does.conclude,
-            sizes={
-                "fiber": len(assembly.closed),
-                "node": len(assembly.node_length),
-                "edge": len(assembly.edges),
-            },
-            fixed={
-                "node_start": ("fiber_bound", assembly.node_start.copy()),
-                "closed": ("fiber", assembly.closed.copy()),
-            },
+            sizes=sizes_of(assembly),
+            fixed=fixed_of(assembly),
             start=hashlib.sha256(state.x.tobytes()).hexdigest(),
             derive=does.derive,
             derived=tuple(does.derive(first)),
@@ -288,6 +283,23 @@ class Pulled(Driven):
             later=tuple(time for time, _ in does.later),
             begin=lambda time: _hold(motion, does.boundary_at(time)),
         )
+
+
+def sizes_of(assembly: Assembly) -> dict[str, int]:
+    """Sizes of the dimensions of what is recorded of fibers."""
+    return {
+        "fiber": len(assembly.closed),
+        "node": len(assembly.node_length),
+        "edge": len(assembly.edges),
+    }
+
+
+def fixed_of(assembly: Assembly) -> dict[str, tuple[str, NDArray[Any]]]:
+    """Arrays of fibers that do not change, by name, each with its dimension."""
+    return {
+        "node_start": ("fiber_bound", assembly.node_start.copy()),
+        "closed": ("fiber", assembly.closed.copy()),
+    }
 
 
 def _hold(motion: Motion, boundary: Boundary) -> None:

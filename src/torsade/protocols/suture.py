@@ -13,7 +13,7 @@ from pydantic import Field, field_validator, model_validator
 
 from torsade.errors import QuantityError, TorsadeError, quoted
 from torsade.protocols.base import Positive, Trial
-from torsade.protocols.pulled import COMMON, Experiment, Pulled
+from torsade.protocols.pulled import COMMON, Experiment, Pulled, fixed_of, sizes_of
 from torsade.units import Angle, Force, Length, Number, Stiffness, Time, Velocity, Whole
 
 if TYPE_CHECKING:
@@ -89,8 +89,8 @@ class Suture(Pulled):
 
     protocol: Literal["suture"] = "suture"
     throws: str = Field(
-        description="Half turns of the throw tied first and of the throw on it, odd and negative where "
-        "left-handed: 3,-3 is the reef knot, 3,3 the granny, 5,-3 the surgeon's knot.",
+        description="Pair of odd numbers, half turns of the throw tied first and of that on it, negative "
+        "where left-handed: 3,-3 is the reef knot, 3,3 the granny, 5,-3 the surgeon's knot.",
         examples=["5,-3"],
     )
     material: str = Field(
@@ -201,9 +201,17 @@ class Suture(Pulled):
     def configuration(self) -> Centerline:
         """The one strand, checked."""
         from torsade.centerline import Centerline
+
+        return Centerline((self._checked().strand,))
+
+    def _checked(self) -> Stitch:
+        """The strand and the cylinders, once it is certain that a fiber can lie so."""
+        from torsade.centerline import Centerline
         from torsade.protocols.shapes import check_built
 
-        return check_built(Centerline((self.stitch().strand,)), self.h)
+        stitch = self.stitch()
+        check_built(Centerline((stitch.strand,)), self.h)
+        return stitch
 
     def experiment(self, assembly: Assembly, state: State) -> Experiment:
         """Both ends pulled, to the left and to the right."""
@@ -214,7 +222,7 @@ class Suture(Pulled):
         pull = self.force * np.array([math.cos(self.angle), math.sin(self.angle), 0.0])
         boundary = ends.pull(ends.free(assembly), assembly, 0, 0, pull * (-1, 1, 1))
         boundary = ends.pull(boundary, assembly, 0, 1, pull)
-        return Experiment(boundary, lambda state: {}, lambda history: {}, lambda history, loose_at: {})
+        return Experiment(boundary)
 
     def trial(self) -> Trial:
         from torsade.assembly import assemble, initial_state
@@ -223,11 +231,10 @@ class Suture(Pulled):
         from torsade.protocols.shapes import check_frames
         from torsade.protocols.wound import RECORDED, SAMPLED, Wound
 
-        stitch = self.stitch()
-        shape = self.configuration()
+        stitch = self._checked()
         check_frames(self.frames + 1, len(stitch.strand))
-        fiber = assemble(shape.strands)
-        start = initial_state(fiber, shape.strands)
+        fiber = assemble([stitch.strand])
+        start = initial_state(fiber, [stitch.strand])
         tissue = Tissue(
             self.h_s, self.skin_stiffness, self.skin_relaxation * self.skin_stiffness, self.skin_drag,
             self.friction, self.friction_speed,
@@ -242,11 +249,8 @@ class Suture(Pulled):
             (*COMMON, *RECORDED),
             wound.frame,
             wound.conclude,
-            sizes={"fiber": 1, "node": len(fiber.node_length), "edge": len(fiber.edges), "side": 2},
-            fixed={
-                "node_start": ("fiber_bound", fiber.node_start.copy()),
-                "closed": ("fiber", fiber.closed.copy()),
-            },
+            sizes=sizes_of(fiber) | {"side": 2},
+            fixed=fixed_of(fiber),
             start=hashlib.sha256(state.x.tobytes()).hexdigest(),
             sampled=SAMPLED,
             sample=wound.sample,
@@ -285,17 +289,17 @@ class Suture(Pulled):
             "writhe": bottom + top,
             "tau": tau_of(bottom, top),
             "z_displacement_m": _sides(z[last]),
-            "z_peak_m": attrs.get("z_peak_m"),
+            "z_peak_m": {side: float(attrs["z_peak_m"][side]) for side in ("a", "b", "relative")},
             "gap_m": float(end["gap"]),
-            "closed_at_s": attrs.get("closed_at_s"),
+            "closed_at_s": _known(attrs, "closed_at_s"),
             "skin_force_N": {
                 "normal": end["skin_pressing"].values.tolist(),
                 "shear": end["skin_shearing"].values.tolist(),
                 "along_z": end["skin_force"][:, 2].values.tolist(),
                 "spring": end["spring_force"].values.tolist(),
             },
-            "slip_speed_m_per_s": attrs.get("slip_speed_m_per_s"),
-            "c_f": attrs.get("c_f"),
+            "slip_speed_m_per_s": _known(attrs, "slip_speed_m_per_s"),
+            "c_f": _known(attrs, "c_f"),
             "gap_after_release_m": float(data["gap"][-1]) if spec.release > 0 else None,
             "times_s": data["time"].values.tolist(),
             "gaps_m": data["gap"].values.tolist(),
@@ -303,6 +307,11 @@ class Suture(Pulled):
             "steps": attrs["steps"],
             "wall_s": attrs["wall_s"],
         }
+
+
+def _known(attrs: Mapping[str, Any], name: str) -> float | None:
+    """A number concluded from the run, where there is one."""
+    return float(attrs[name]) if name in attrs else None
 
 
 def _sides(z: Floats) -> dict[str, float]:

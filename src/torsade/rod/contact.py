@@ -143,8 +143,13 @@ def contact_energy(a: Assembly, m: Model, length: Floats, tangent: Floats, conta
     for k in range(contacts.count[0]):
         p = 1.0 - distance[k] / m.diameter
         area = _area(m.projected, edges[k, 0], edges[k, 1], rest_length, length, tangent)
-        total += m.diameter * m.K * area * 0.5 * (p * p + m.p0_squared * p**4)
+        total += m.diameter * m.K * area * contact_potential(m, p)
     return total
+
+
+def contact_potential(m: Model, p: float) -> float:
+    """V(p) of a compression p."""
+    return 0.5 * (p * p + m.p0_squared * p**4)
 
 
 def contact_pressure(m: Model, R: float) -> float:
@@ -285,4 +290,6 @@ def add_drag_torques(
             spin_weight[f] += wf
 
 
-compile_kernels(__name__, inline=("contact_pressure", "_area"), owning=("contacts_among",))
+compile_kernels(
+    __name__, inline=("contact_potential", "contact_pressure", "_area"), owning=("contacts_among",)
+)

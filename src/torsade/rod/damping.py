@@ -17,7 +17,7 @@ from torsade.arrays import Bools, Floats, Index
 from torsade.assembly import Assembly
 from torsade.rod.contact import Contacts
 from torsade.rod.factor import Factor, assemble, eliminate, substitute
-from torsade.rod.skin import Skin, add_skin_diagonal, add_skin_drag, add_skin_entries, couple_skin
+from torsade.rod.skin import Skin, add_skin_drag, add_skin_entries, couple_skin
 
 
 class MobilityWork(NamedTuple):
@@ -203,7 +203,7 @@ def solve_mobility(
     if len(factor) == 0:
         return _conjugate_gradients(a, eta_A, contacts, skin, force, fixed, tolerance, v, work)
     assemble(a, eta_A, contacts, fixed, factor)
-    add_skin_entries(a, skin, factor)
+    add_skin_entries(a, skin, factor.diagonal, factor.value, factor.edge_slot)
     diagonal, prescribed = factor.diagonal, work.r
     for i in range(v.shape[0]):
         for c in range(3):
@@ -243,7 +243,7 @@ def _conjugate_gradients(
     n = force.shape[0]
     r, z, p, q = work.r, work.z, work.p, work.q
     _tridiagonal_part(a, eta_A, contacts, work)
-    add_skin_diagonal(a, skin, work.diagonal, work.coupling)
+    add_skin_entries(a, skin, work.diagonal, work.coupling, ())
     _factorise(a, fixed, work)
     apply_drag(a, eta_A, contacts, v, q)
     add_skin_drag(a, skin, v, q)

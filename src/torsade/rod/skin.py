@@ -22,9 +22,9 @@ from typing import NamedTuple
 import numpy as np
 
 from torsade._compile import compile_kernels
-from torsade.arrays import Bools, Floats, Index, Ints
+from torsade.arrays import Bools, Floats, Index, Ints, Slots
 from torsade.assembly import Assembly
-from torsade.rod.contact import Model, contact_pressure
+from torsade.rod.contact import Model, contact_potential, contact_pressure
 from torsade.rod.factor import Factor, carry, substitute
 
 MOST_CYLINDERS = 3
@@ -34,7 +34,7 @@ SETTLED = 1e-3
 """Relative change of a friction's weight at which velocities are taken to agree with it."""
 
 MOST_ROUNDS = 60
-"""Solves of one evaluation, each with the friction of the velocities before."""
+"""Solves of one evaluation, each with the friction of the velocities before; then the last ones are taken."""
 
 
 class Skin(NamedTuple):
@@ -140,12 +140,6 @@ def _part_cylinders(m: Model, radius: float, i: Index, j: Index, x: Floats, forc
         force[j, 1] -= N * dy / D
 
 
-def _potential(m: Model, overlap: float) -> float:
-    """2h K V(p) [N/m] at an overlap [m]."""
-    p = overlap / m.diameter
-    return m.diameter * m.K * 0.5 * (p * p + m.p0_squared * p**4)
-
-
 def skin_energy(a: Assembly, m: Model, skin: Skin, x: Floats, mid: Floats) -> tuple[float, float]:
     """Energy [J] of contacts with the skin and between its parts, at the contacts found, and of springs."""
     node, rest, edge, cylinder = skin.node, skin.rest, skin.edge, skin.cylinder
@@ -154,8 +148,8 @@ def skin_energy(a: Assembly, m: Model, skin: Skin, x: Floats, mid: Floats) -> tu
         e = edge[n]
         i = node[cylinder[n]]
         D = math.sqrt((x[i, 0] - mid[e, 0]) ** 2 + (x[i, 1] - mid[e, 1]) ** 2)
-        overlap = skin.radius + 0.5 * m.diameter - D
-        contact += m.diameter * a.rest_length[e] * _potential(m, overlap)
+        p = (skin.radius + 0.5 * m.diameter - D) / m.diameter
+        contact += m.diameter * a.rest_length[e] * (m.diameter * m.K * contact_potential(m, p))
     spring = 0.0
     for c in range(node.shape[0]):
         i = node[c]
@@ -163,15 +157,17 @@ def skin_energy(a: Assembly, m: Model, skin: Skin, x: Floats, mid: Floats) -> tu
             spring += 0.5 * skin.stiffness * (x[i, k] - rest[c, k]) ** 2
         for d in range(c):
             j = node[d]
-            overlap = 2.0 * skin.radius - math.sqrt((x[i, 0] - x[j, 0]) ** 2 + (x[i, 1] - x[j, 1]) ** 2)
-            if overlap > 0.0:
-                contact += m.diameter * 2.0 * skin.radius * _potential(m, overlap)
+            D = math.sqrt((x[i, 0] - x[j, 0]) ** 2 + (x[i, 1] - x[j, 1]) ** 2)
+            p = (2.0 * skin.radius - D) / m.diameter
+            if p > 0.0:
+                contact += m.diameter * 2.0 * skin.radius * (m.diameter * m.K * contact_potential(m, p))
     return contact, spring
 
 
 def weigh_skin(a: Assembly, m: Model, skin: Skin | tuple[()], v: Floats) -> float:
     """Weight of the drag at every contact, its friction that at velocities v (n_nodes, 3).
 
+    Friction is left out where nothing moves at all, since then velocities are not known yet.
     Returns the largest relative change of a weight, 0 where there is no friction.
     """
     if len(skin) == 0:
@@ -238,8 +234,14 @@ def power_of_skin(a: Assembly, skin: Skin | tuple[()], v: Floats, chosen: Bools)
     return power
 
 
-def add_skin_diagonal(a: Assembly, skin: Skin | tuple[()], diagonal: Floats, coupling: Floats) -> None:
-    """Add the skin's part of M to its diagonal (n_nodes,) and to the coupling (n_edges,) along each edge."""
+def add_skin_entries(
+    a: Assembly, skin: Skin | tuple[()], diagonal: Floats, coupling: Floats, slot: Slots | tuple[()]
+) -> None:
+    """Add the skin's part of M, but for what couples fibers and cylinders.
+
+    diagonal (n_nodes,) is that of M, and coupling what couples the nodes of edges: of edge e at slot[e], or
+    at e where slot is ().
+    """
     if len(skin) == 0:
         return
     node, edges = skin.node, a.edges
@@ -251,25 +253,7 @@ def add_skin_diagonal(a: Assembly, skin: Skin | tuple[()], diagonal: Floats, cou
         e = edge[n]
         diagonal[edges[e, 0]] += w
         diagonal[edges[e, 1]] += w
-        coupling[e] += w
-        diagonal[node[cylinder[n]]] += weight[n]
-
-
-def add_skin_entries(a: Assembly, skin: Skin | tuple[()], factor: Factor) -> None:
-    """Add the skin's part of M to an assembled matrix, but for what couples fibers and cylinders."""
-    if len(skin) == 0:
-        return
-    node, edges, edge_slot = skin.node, a.edges, factor.edge_slot
-    edge, cylinder, weight = skin.edge, skin.cylinder, skin.weight
-    diagonal, value = factor.diagonal, factor.value
-    for c in range(node.shape[0]):
-        diagonal[node[c]] += skin.ground
-    for n in range(skin.count[0]):
-        w = 0.25 * weight[n]
-        e = edge[n]
-        diagonal[edges[e, 0]] += w
-        diagonal[edges[e, 1]] += w
-        value[edge_slot[e]] += w
+        coupling[e if len(slot) == 0 else slot[e]] += w
         diagonal[node[cylinder[n]]] += weight[n]
 
 
@@ -388,4 +372,4 @@ def on_skin(skin: Skin | tuple[()], body: Index, component: Ints) -> bool:
     return found
 
 
-compile_kernels(__name__, inline=("_part_cylinders", "_potential", "_solve_small"), plain=("skin_on",))
+compile_kernels(__name__, inline=("_part_cylinders", "_solve_small"), plain=("skin_on",))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -27,10 +27,13 @@ __all__ = [
     "battery_note",
     "density_bar",
     "density_colour",
+    "density_unit",
     "draw_battery",
+    "energy_lines",
     "name_knots",
     "plot_battery",
     "shapes",
+    "time_axis",
     "top_density",
 ]
 
@@ -63,7 +66,7 @@ def _density_colormap() -> Any:
 
 def bar_of_density(dataset: xarray.Dataset) -> Bar:
     """What a colour bar on a picture explains."""
-    top = top_density(dataset) / _unit(dataset)
+    top = top_density(dataset) / density_unit(dataset)
     ticks = require("matplotlib.ticker").MaxNLocator(4).tick_values(0.0, top)
     shown = tuple(float(tick) for tick in ticks if tick <= top)
     return Bar(_density_colormap, top, shown, r"energy per length  ($E_b h^2$)")
@@ -143,7 +146,7 @@ class Shape(NamedTuple):
         then = dataset.isel(charge=frame)
         x, density = (np.asarray(then[f"charge_{n}"], np.float64) for n in ("position", "energy_density"))
         time = float(then["charge_time"]) / dataset.attrs["T0_s"]
-        return cls(x, density / _unit(dataset), True, dataset.attrs["charge_knots"][frame], time, 1.0)
+        return cls(x, density / density_unit(dataset), True, dataset.attrs["charge_knots"][frame], time, 1.0)
 
     @classmethod
     def discharging(cls, dataset: xarray.Dataset, frame: int) -> Shape:
@@ -152,7 +155,7 @@ class Shape(NamedTuple):
         x, density = (np.asarray(then[name], np.float64) for name in ("position", "energy_density"))
         time = float(then["time"]) / dataset.attrs["T0_s"]
         knot = dataset.attrs["frame_knots"][frame]
-        return cls(x, density / _unit(dataset), False, knot, time, float(energy[frame] / energy[0]))
+        return cls(x, density / density_unit(dataset), False, knot, time, float(energy[frame] / energy[0]))
 
 
 def shapes(dataset: xarray.Dataset, shares: Sequence[float] = SHARES) -> Iterator[Shape]:
@@ -214,16 +217,11 @@ def plot_battery(dataset: xarray.Dataset, path: str | Path) -> Path:
         rows = 1 if crossings is None else 2
         figure = require("matplotlib.figure").Figure(figsize=(4.5, 1.3 + 1.3 * rows), layout="constrained")
         axes = figure.subplots(rows, 1, sharex=True, squeeze=False, height_ratios=(3, 1)[:rows])[:, 0]
-        total = sum(parts.values())
-        axes[0].plot(t, total, color=INK, label="all")
-        for kind, values in parts.items():
-            axes[0].plot(t, values, color=ENERGIES[kind], linewidth=1.0, label=kind)
-        axes[0].set_yscale("log")
-        axes[0].set_ylim(5e-4 * float(np.max(total)), 1.6 * float(np.max(total)))
+        top = energy_lines(axes[0], t, parts)
+        axes[0].set_ylim(5e-4 * top, 1.6 * top)
         axes[0].set_ylabel("energy ($E_0$)")
         axes[0].legend(frameon=False, ncols=5, fontsize=7, loc="lower right", bbox_to_anchor=(1.0, 1.0))
-        axes[-1].set_xscale("symlog", linthresh=float(t[1]), linscale=0.3)
-        axes[-1].set_xlim(0.0, t[-1])
+        time_axis(axes[-1], t)
         axes[-1].set_xlabel(label)
         if crossings is not None:
             axes[1].step(t, crossings, where="post", color=INK)
@@ -234,6 +232,22 @@ def plot_battery(dataset: xarray.Dataset, path: str | Path) -> Path:
         axes[0].set_title(f"{dataset.attrs['knot']}", fontsize=8.5)
         figure.align_ylabels(list(axes))
         return save(figure, path)
+
+
+def energy_lines(axes: Any, t: Floats, parts: Mapping[str, Floats]) -> float:
+    """Energies by kind and their sum against time, all of shape (n,); returns the largest sum."""
+    total = np.sum(list(parts.values()), axis=0)
+    axes.plot(t, total, color=INK, label="all")
+    for kind, values in parts.items():
+        axes.plot(t, values, color=ENERGIES[kind], linewidth=1.0, label=kind)
+    axes.set_yscale("log")
+    return float(total.max())
+
+
+def time_axis(axes: Any, t: Floats) -> None:
+    """Times (n,), logarithmic from the second one on; before it the axis goes on to 0."""
+    axes.set_xscale("symlog", linthresh=float(t[1]), linscale=0.3)
+    axes.set_xlim(0.0, t[-1])
 
 
 def name_knots(axes: Sequence[Any], t: Floats, names: Sequence[str]) -> None:
@@ -250,7 +264,7 @@ def name_knots(axes: Sequence[Any], t: Floats, names: Sequence[str]) -> None:
             )  # fmt: skip
 
 
-def _unit(dataset: xarray.Dataset) -> float:
+def density_unit(dataset: xarray.Dataset) -> float:
     """E_b h² [N]: E_0 over the length of the fiber, which is among the numbers of the model."""
     return float(dataset.attrs["E0_J"]) / float(json.loads(dataset.attrs["model"])["fiber_length"])
 

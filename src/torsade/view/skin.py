@@ -1,14 +1,16 @@
-"""Skin in pictures: cylinders that let see through them, as long as the picture needs."""
+"""Skin in pictures: parts of cylinders that let see through them."""
 
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from torsade.errors import TorsadeError
 from torsade.view.tube import Mesh, tube
 
 if TYPE_CHECKING:
@@ -51,11 +53,27 @@ def skin_colour(mesh: Mesh) -> Floats:
 
 
 def _radius(dataset: xarray.Dataset) -> float:
-    return float(json.loads(dataset.attrs["model"])["skin_radius"])
+    """Radius of the skin [m]."""
+    try:
+        radius = float(json.loads(dataset.attrs["model"])["skin_radius"])
+    except (LookupError, TypeError, ValueError):
+        radius = math.nan
+    if not 0 < radius < math.inf:
+        raise TorsadeError(
+            "this result cannot be drawn: its attribute model does not say how thick its skin is; give one "
+            "written by a protocol"
+        )
+    return radius
 
 
 def skin_at(dataset: xarray.Dataset, frame: int) -> Skin | None:
-    """The skin in a stored frame of a result; None where there is none."""
+    """The skin in a stored frame of a result; None where there is none.
+
+    Raises
+    ------
+    TorsadeError
+        When the result does not say how thick it is.
+    """
     if "skin_position" not in dataset:
         return None
     return Skin(np.asarray(dataset["skin_position"][frame], np.float64), _radius(dataset))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,14 +13,18 @@ import numpy as np
 from torsade.errors import TorsadeError
 from torsade.view._extra import require
 from torsade.view.battery import draw_battery
-from torsade.view.camera import best_side
+from torsade.view.camera import best_side, level_right
 from torsade.view.cascade import draw_pieces
 from torsade.view.scene import render_result
+from torsade.view.skin import FROM_ABOVE, skin_at, skin_colour
+from torsade.view.stage import OPACITY
 from torsade.view.strands import frame_index, strands_at, tubes_at
+from torsade.view.tube import Mesh
 
 if TYPE_CHECKING:
     import xarray
 
+    from torsade.arrays import Floats
     from torsade.results import Result
 
 __all__ = ["Window", "draw_result", "has_display", "show"]
@@ -75,7 +80,7 @@ def has_display() -> bool:
 class Window:
     """Fibers as tubes, coloured by strain or each in its own colour, with a slider over the frames.
 
-    Left and Right go one frame back and forth.
+    Skin lets see through it. Left and Right go one frame back and forth.
 
     Parameters
     ----------
@@ -128,18 +133,24 @@ class Window:
     def _draw(self, frame: int) -> None:
         t = float(self._dataset["time"][frame])
         note = f"frame {frame} of {self._frames - 1}, t = {t:.4g} s" if self._frames > 1 else ""
-        mesh = self._surface(frame)
-        self.plotter.add_mesh(
-            mesh, scalars="colour", rgb=True, name="fibers", smooth_shading=True, reset_camera=False
-        )
+        self._put("fibers", tubes_at(self._dataset, frame))
+        if bodies := self._skin(frame):
+            # Of glass only the side toward the camera is drawn, so that it needs no sorting.
+            self._put("skin", [(m, skin_colour(m)) for m in bodies], opacity=OPACITY, culling="back")
         self.plotter.add_text(
             note, position=(0.02, 0.95), viewport=True, font_size=11, color=INK, name="note"
         )
 
-    def _surface(self, frame: int) -> Any:
-        """All tubes of a frame in one mesh with the colours of its points."""
+    def _skin(self, frame: int) -> list[Mesh]:
+        """Cylinders of skin [m], none where there is no skin."""
+        skin, radius = skin_at(self._dataset, frame), float(self._dataset.attrs["radius"])
+        bodies = [] if skin is None else skin.meshes(np.zeros(3), radius)
+        return [mesh._replace(vertices=radius * mesh.vertices) for mesh in bodies]
+
+    def _put(self, name: str, parts: Sequence[tuple[Mesh, Floats]], **options: Any) -> None:
+        """Draw tubes, with sRGB colours (n, 3) of their vertices, in place of what had this name."""
         points, normals, faces, colours, first = [], [], [], [], 0
-        for mesh, rgb in tubes_at(self._dataset, frame):
+        for mesh, rgb in parts:
             points.append(mesh.vertices)
             normals.append(mesh.normals)
             faces.append(mesh.faces + first)
@@ -149,19 +160,25 @@ class Window:
         surface.point_data["Normals"] = np.concatenate(normals)
         surface.point_data["colour"] = np.concatenate(colours)
         surface.point_data.active_normals_name = "Normals"
-        return surface
+        self.plotter.add_mesh(
+            surface, scalars="colour", rgb=True, name=name, smooth_shading=True, reset_camera=False, **options
+        )
 
     def _look(self) -> None:
         """From the side that shows most, as in pictures, with everything in the window."""
         radius = float(self._dataset.attrs["radius"])
         curves = [s.x / radius for s in strands_at(self._dataset, self.frame)]
         x = np.concatenate(curves)
+        bodies = self._skin(self.frame)
         right, toward = np.eye(3)[[0, 2]]  # across the plane in which rods break
-        if "piece_start" not in self._dataset:
+        if bodies:
+            right, toward = level_right(FROM_ABOVE), FROM_ABOVE
+        elif "piece_start" not in self._dataset:
             right, toward = best_side(curves, x, 1.0, level=True)
         camera, focus = self.plotter.camera, 0.5 * radius * (x.min(axis=0) + x.max(axis=0))
         camera.focal_point, camera.position = focus, focus + radius * np.ptp(x) * toward
         camera.up = np.cross(toward, right)
-        bounds = np.stack([x.min(axis=0) - 1, x.max(axis=0) + 1], axis=1) * radius
+        drawn = np.concatenate([radius * (x - 1), radius * (x + 1), *(mesh.vertices for mesh in bodies)])
+        bounds = np.stack([drawn.min(axis=0), drawn.max(axis=0)], axis=1)
         self.plotter.reset_camera(bounds=tuple(bounds.ravel().tolist()))
         camera.zoom(CLOSER)
