@@ -202,10 +202,15 @@ def by_path(chain: Chain, shape: Shape, here: System, rate: Controls) -> tuple[F
 
 def total(values: Floats) -> float:
     """Sum of values (n,), pair by pair in the order of numpy."""
+    return _halves(values)
+
+
+def _halves(values: Floats) -> float:
+    """The sum, by halves: apart from `total`, since a kernel that calls itself cannot be called from Python."""
     n = len(values)
     if n > 128:
         half = n // 2 - n // 2 % 8
-        return total(values[:half]) + total(values[half:])
+        return _halves(values[:half]) + _halves(values[half:])
     found = 0.0
     if n >= 8:
         r = values[:8].copy()
@@ -218,6 +223,6 @@ def total(values: Floats) -> float:
     return found
 
 
-_ALL = ("towards", "lift", "lower", "moved", "system", "_rotation_gap", "by_path", "total")
+_ALL = ("towards", "lift", "lower", "moved", "system", "_rotation_gap", "by_path", "total", "_halves")
 
 compile_kernels(__name__, splice=("_rotation_gap",), owning=_ALL, exact=_ALL)
