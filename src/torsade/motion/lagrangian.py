@@ -206,7 +206,7 @@ def total(values: Floats) -> float:
 
 
 def _halves(values: Floats) -> float:
-    """The sum, by halves: apart from `total`, since a kernel that calls itself cannot be called from Python."""
+    """The sum, by halves; apart, since Python cannot call a kernel that calls itself."""
     n = len(values)
     if n > 128:
         half = n // 2 - n // 2 % 8
@@ -223,6 +223,16 @@ def _halves(values: Floats) -> float:
     return found
 
 
-_ALL = ("towards", "lift", "lower", "moved", "system", "_rotation_gap", "by_path", "total", "_halves")
+_ALL = (
+    "towards",
+    "lift",
+    "lower",
+    "moved",
+    "system",
+    "_rotation_gap",
+    "by_path",
+    "total",
+    "_halves",
+)
 
 compile_kernels(__name__, splice=("_rotation_gap",), owning=_ALL, exact=_ALL)
