@@ -297,5 +297,5 @@ def test_without_a_cache_it_is_not_said_that_compiling_is_done_once(monkeypatch:
     said = []
     SPEC.run(lambda share, note: said.append(note))
     assert said[0] == (
-        "compiling the kernels (about half a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
+        "compiling the kernels (up to a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
     )

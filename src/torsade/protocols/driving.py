@@ -98,10 +98,10 @@ def preparation() -> str:
     """What there is to do before the first step."""
     if _compile.CACHE is None:
         return (
-            "compiling the kernels (about half a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
+            "compiling the kernels (up to a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
         )
     kept = any(_compile.CACHE.rglob("*.nbc"))
-    return "getting ready" if kept else "compiling the kernels, this once (about half a minute)"
+    return "getting ready" if kept else "compiling the kernels, this once (up to a minute)"
 
 
 class _Clock:
