@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import random
 
@@ -88,6 +89,27 @@ def test_a_column_without_a_value_takes_the_type_of_the_others(con, tmp_path):
             (None, None, "text"),
         ]
         parts.merge_all(con, tmp_path)
+
+
+@pytest.mark.parametrize("size", [1, 2, 5])
+@pytest.mark.parametrize("merged", [False, True])
+def test_empty_lists_take_the_type_of_the_others(con, tmp_path_factory, size, merged):
+    """Whichever comes first: names of knots are not numbers, though DuckDB reads '3_1' as 31."""
+    names = {"a": [], "b": ["3_1"], "c": [], "d": ["5_2", "4_1"], "e": None, "f": []}
+    for order in itertools.permutations("abcd"):
+        folder = tmp_path_factory.mktemp("parts")
+        keys = [*order, "e", "f"]
+        for k in range(0, len(keys), size):
+            parts.add(con, folder, [{"key": key, "names": names[key]} for key in keys[k : k + size]])
+        if merged:
+            parts.merge_all(con, folder)
+        assert dict(read(con, folder, "key, names")) == names
+
+
+def test_lists_that_are_empty_everywhere(con, tmp_path):
+    for k in range(2):
+        parts.add(con, tmp_path, [{"key": str(k), "names": []}])
+    assert read(con, tmp_path, "key, names") == [("0", []), ("1", [])]
 
 
 def test_a_file_that_is_not_what_was_written_is_named(con, tmp_path):

@@ -46,9 +46,10 @@ def buckled(edges: int) -> tuple[Chain, Path, Point]:
     m = brentq(least, 1.8, 2.2)
     assert pytest.approx(2.0, abs=0.01) == m
     path = Path(*(controls_at(c, force=(1.0, 0.0, 0.0), torque=t) for t in (m, 0.4)))
-    mode = lowest(c, c.system(begin, path.start))[1][0]
+    here = c.system(begin, path.start)
+    mode = lowest(c, here)[1][0]
     still = Tangent(np.zeros((edges + 2, 4)), np.zeros(3), 1.0)
-    point = switch(c, path, Point(0.0, begin._replace(torque=m), 0, still), mode, 0.05)
+    point = switch(c, path, Point(c, 0.0, begin._replace(torque=m), here, still), mode, 0.05)
     assert point is not None
     return c, path, point
 

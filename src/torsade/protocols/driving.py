@@ -97,9 +97,7 @@ def _begin(spec: Driven, trial: Trial, out: str | Path | None, resume: bool, ove
 def preparation() -> str:
     """What there is to do before the first step."""
     if _compile.CACHE is None:
-        return (
-            "compiling the kernels (up to a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
-        )
+        return "compiling the kernels (up to a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
     kept = any(_compile.CACHE.rglob("*.nbc"))
     return "getting ready" if kept else "compiling the kernels, this once (up to a minute)"
 

@@ -40,7 +40,7 @@ FAN = 8
 """So many neighbours of like size are merged into one."""
 
 NEVER_GIVEN = "UTINYINT"
-"""Type of columns that have no value in a file; nothing else is stored so."""
+"""Type of columns, and of what is in lists, without a value in a file; nothing else is stored so."""
 
 _NAME = re.compile(r"part-(\d{8})-(\d{8})-([0-9a-f]{8})\.parquet", re.A)
 
@@ -164,9 +164,10 @@ def _merged(con: DuckDBPyConnection, folder: Path, parts: Sequence[Part]) -> Par
     """One file with the rows of several, of which it takes the place."""
     for part in parts:
         part.verify()
+    rows = union(con, parts, NEVER_GIVEN)
     # Rows that were written again later, such as failures that were retried, count once.
     con.execute(
-        f"CREATE OR REPLACE TEMP TABLE written AS SELECT * EXCLUDE (part) FROM ({union(con, parts)}) "
+        f"CREATE OR REPLACE TEMP TABLE written AS SELECT * EXCLUDE (part) FROM ({rows}) "
         "QUALIFY row_number() OVER (PARTITION BY key ORDER BY part DESC) = 1 ORDER BY key"
     )
     merged = _stored(con, folder, parts[0].first, parts[-1].last)
@@ -175,10 +176,10 @@ def _merged(con: DuckDBPyConnection, folder: Path, parts: Sequence[Part]) -> Par
     return merged
 
 
-def union(con: DuckDBPyConnection, parts: Sequence[Part]) -> str:
+def union(con: DuckDBPyConnection, parts: Sequence[Part], unknown: str = "DOUBLE") -> str:
     """A query for the rows of all files, and `part`, the number of the first write of the file.
 
-    Columns that a file has no value of take their type from the others.
+    Columns have one type in all files, that which holds the values of each; `unknown` where there are none.
 
     Raises
     ------
@@ -196,11 +197,15 @@ def union(con: DuckDBPyConnection, parts: Sequence[Part]) -> str:
                 raise FileNotFoundError(part.path) from None
             raise damaged(part.path, str(error).splitlines()[0]) from None
         shapes.append({row[0]: row[1] for row in found})
-    typed = {name for shape in shapes for name, kind in shape.items() if kind != NEVER_GIVEN}
+    names = dict.fromkeys(name for shape in shapes for name in shape)
+    kinds = {name: _common(shape.get(name, NEVER_GIVEN) for shape in shapes) for name in names}
     queries = []
     for part, shape in zip(parts, shapes, strict=True):
-        columns = [name_of(name) for name, kind in shape.items() if kind != NEVER_GIVEN]
-        columns += [f"NULL::DOUBLE AS {name_of(name)}" for name in shape if name not in typed]
+        columns = [
+            f"{'NULL' if kind == NEVER_GIVEN else name_of(name)}"
+            f"::{kinds[name].replace(NEVER_GIVEN, unknown)} AS {name_of(name)}"
+            for name, kind in shape.items()
+        ]
         queries.append(
             f"SELECT {', '.join(columns)}, {part.first} AS part FROM read_parquet({literal(part.path)})"
         )
@@ -248,29 +253,32 @@ def sync(folder: Path) -> None:
 def write_rows(con: DuckDBPyConnection, rows: Sequence[Mapping[str, Any]]) -> None:
     """Put rows into the table `written`, columns by name with the types of their values."""
     names = dict.fromkeys(name for row in rows for name in row)
-    kinds = {name: _kind(row.get(name) for row in rows) or NEVER_GIVEN for name in names}
+    kinds = {name: _kind(row.get(name) for row in rows) for name in names}
     con.execute(
         "CREATE OR REPLACE TEMP TABLE written AS SELECT row.* FROM (SELECT unnest(from_json(?, ?)) AS row)",
         [json.dumps([dict(row) for row in rows], allow_nan=False), json.dumps([kinds])],
     )
 
 
-def _kind(values: Iterable[Any]) -> str | None:
-    """The type of a column, or None without a value."""
-    kinds = {kind for kind in map(_kind_of, values) if kind is not None}
-    if len(kinds) <= 1:
-        return next(iter(kinds), None)
-    if kinds <= {"BIGINT", "DOUBLE"}:
-        return "DOUBLE"
-    if kinds <= {"BIGINT[]", "DOUBLE[]"}:
-        return "DOUBLE[]"
-    return "VARCHAR"
+def _kind(values: Iterable[Any]) -> str:
+    """The type of a column, or of what is in a list."""
+    return _common(map(_kind_of, values))
 
 
-def _kind_of(value: Any) -> str | None:
+def _common(kinds: Iterable[str]) -> str:
+    """The type that holds the values of all of these: text where they have nothing in common."""
+    given = set(kinds) - {NEVER_GIVEN}
+    if len(given) <= 1:
+        return next(iter(given), NEVER_GIVEN)
+    if all(kind.endswith("[]") for kind in given):
+        return _common(kind.removesuffix("[]") for kind in given) + "[]"
+    return "DOUBLE" if given == {"BIGINT", "DOUBLE"} else "VARCHAR"
+
+
+def _kind_of(value: Any) -> str:
     if value is None:
-        return None
+        return NEVER_GIVEN
     if isinstance(value, list | tuple):
-        return f"{_kind(value) or 'DOUBLE'}[]"
+        return f"{_kind(value)}[]"
     kinds = {bool: "BOOLEAN", int: "BIGINT", float: "DOUBLE"}
     return next((name for kind, name in kinds.items() if isinstance(value, kind)), "VARCHAR")
