@@ -8,7 +8,17 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-__all__ = ["STOPPING", "Patience", "by_sigterm", "exit_code", "heard", "ours", "sigterm_stops", "stop"]
+__all__ = [
+    "STOPPING",
+    "Late",
+    "Patience",
+    "by_sigterm",
+    "exit_code",
+    "heard",
+    "ours",
+    "sigterm_stops",
+    "stop",
+]
 
 STOPPING = "stopping ... (Ctrl-C again to stop at once)"
 """What is said when the first of them was heard."""
@@ -58,15 +68,21 @@ def sigterm_stops() -> Iterator[None]:
         signal.signal(signal.SIGTERM, signal.SIG_DFL)
 
 
+class Late(KeyboardInterrupt):
+    """Ctrl-C or SIGTERM that came when what had patience was about to end: all of that is done."""
+
+
 class Patience:
     """While it lasts, Ctrl-C and SIGTERM wait for the next call of `end`: no step or write is cut in half.
 
-    `told` is called at the first of them; a second one does not wait. Handlers of others are left in place.
+    `told` is called at the first of them; a second one does not wait. One that comes after the last call of
+    `end` is raised as `Late` when this is left, so that whatever was to come next is not begun. Handlers of
+    others are left in place.
     """
 
     def __init__(self, told: Callable[[], None]) -> None:
         self._told = told
-        self._asked = False
+        self._asked = self._raised = False
         self._before: dict[int, Any] = {}
 
     def __enter__(self) -> Patience:
@@ -76,18 +92,20 @@ class Patience:
                     self._before[number] = signal.signal(number, self._note)
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
         for number, handler in self._before.items():
             signal.signal(number, handler)
+        if self._asked and not self._raised and kind is None:
+            raise Late
 
     def _note(self, number: int, frame: object) -> None:
         heard(number)
-        if self._asked:
-            raise KeyboardInterrupt
+        self.end()
         self._asked = True
         self._told()
 
     def end(self) -> None:
         """Raise KeyboardInterrupt if a signal has come."""
         if self._asked:
+            self._raised = True
             raise KeyboardInterrupt

@@ -14,7 +14,7 @@ import pytest
 
 from torsade.cli import main
 from torsade.protocols import SnapTwist
-from torsade.view import film
+from torsade.view import encode, film
 
 pytest.importorskip("pyvista")
 pytest.importorskip("imageio_ffmpeg")
@@ -96,3 +96,21 @@ def test_what_an_interrupt_leaves(stored: Path, tmp_path: Path) -> None:
     assert process.returncode == 130
     assert error == "torsade: interrupted; no movie is written.\n"
     assert not any(tmp_path.iterdir())
+
+
+def test_ctrl_c_when_the_movie_is_whole_does_not_deny_it(
+    stored: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Heard after the last picture, while the file is given its name."""
+    check = encode._check
+
+    def then_stopped(part: Path, path: Path, written: int) -> None:
+        check(part, path, written)
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(encode, "_check", then_stopped)
+    out = tmp_path / "snap.mp4"
+    options = ["--size", "200x110", "--seconds", "0.5", "--fps", "6"]
+    assert status("movie", str(stored), "-o", str(out), *options) == 130
+    assert capsys.readouterr().err == f"torsade: interrupted; {str(out)!r} is complete.\n"
+    assert out.read_bytes()[4:8] == b"ftyp"

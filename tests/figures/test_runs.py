@@ -231,6 +231,21 @@ def test_ctrl_c_says_how_many_runs_are_stored(tmp_path, stored_reef):
     assert len(list(tmp_path.iterdir())) == 1  # neither a lock nor anything begun
 
 
+def test_ctrl_c_at_the_end_of_a_run_keeps_the_next_from_beginning(tmp_path, monkeypatch):
+    complete = store.complete
+
+    def then_stopped(*arguments):
+        complete(*arguments)
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(store, "complete", then_stopped)
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        results({"reef": short("reef"), "thief": short("thief")}, tmp_path, workers=1)
+    said = f"interrupted; 1 of 2 runs is stored in {str(tmp_path)!r}; the same command goes on"
+    assert str(stopped.value) == said
+    assert list(tmp_path.iterdir()) == [run_path("reef", short("reef"), tmp_path)]
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(os.name == "nt", reason="SIGTERM is sent otherwise there")
 def test_sigterm_to_the_command_alone_stops_its_workers_too(tmp_path):

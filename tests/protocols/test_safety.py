@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -257,6 +258,50 @@ def test_the_first_ctrl_c_waits_and_the_second_does_not() -> None:
             signal.raise_signal(signal.SIGINT)
         with pytest.raises(KeyboardInterrupt):
             patience.end()
+
+
+def test_a_late_ctrl_c_is_not_lost() -> None:
+    """What comes after the last look is raised at the end, to the outermost block that has patience."""
+    from torsade.stopping import Late, Patience
+
+    reached = []
+
+    def late(error: Exception | None) -> None:
+        with Patience(lambda: None):
+            with Patience(lambda: None) as inner:
+                inner.end()
+                signal.raise_signal(signal.SIGINT)
+            reached.append(error)
+            if error is not None:
+                raise error
+
+    with pytest.raises(Late):
+        late(None)
+    with pytest.raises(ValueError, match="mine"):
+        late(ValueError("mine"))
+    assert len(reached) == 2
+    with Patience(lambda: None) as calm:
+        calm.end()
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_ctrl_c_when_the_result_has_just_got_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The run is complete, and what was to come after it is not begun."""
+    complete = store.complete
+
+    def then_stopped(*arguments: Any) -> None:
+        complete(*arguments)
+        signal.raise_signal(signal.SIGINT)
+
+    monkeypatch.setattr(store, "complete", then_stopped)
+    out = tmp_path / "reef.zarr"
+    with pytest.raises(Interrupted, match=rf"; the result is complete in '{out}'$") as stopped:
+        SPEC.run(out=out)
+    assert stopped.value.part is None
+    assert places.attributes(out)["status"] == "complete"  # type: ignore[index]
+    assert [path.name for path in tmp_path.iterdir()] == ["reef.zarr"]
 
 
 def test_long_stretches_without_frames_look_at_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:

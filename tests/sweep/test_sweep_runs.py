@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import signal
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -92,6 +93,18 @@ def test_a_failure_is_stored_with_its_reason_and_run_again_when_asked(tmp_path):
     again = in_threads(sweep, tmp_path, retry_failed=True)
     assert (again.ran, again.failed, again.before) == (1, 1, 2)
     assert again.catalogue.query("SELECT count(*) FROM stored").rows == [(3,)]
+
+
+def test_ctrl_c_after_the_last_point_is_not_lost(tmp_path):
+    def stop(share, note):
+        if share == 1.0:
+            signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt) as stopped:
+        in_threads(bends(), tmp_path / "bent", progress=stop)
+    said = f"interrupted; 6 of 6 points are stored in {str(tmp_path / 'bent')!r}; the same command goes on"
+    assert str(stopped.value) == said
+    assert in_threads(bends(), tmp_path / "bent").ran == 0
 
 
 def test_whole_results_are_kept_where_that_is_wanted(tmp_path):

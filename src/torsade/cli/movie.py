@@ -8,6 +8,7 @@ from pathlib import Path
 
 from torsade.cli.commands import check_drawings, progress
 from torsade.errors import TorsadeError, quoted
+from torsade.stopping import Late
 
 __all__ = ["make"]
 
@@ -45,6 +46,8 @@ def make(
                 dataset, path, seconds=lasting, fps=rate, size=asked, frames=between, colour=colour,
                 whole=whole, progress=shown,
             )  # fmt: skip
+    except Late:
+        raise KeyboardInterrupt(f"interrupted; {path!r} is complete") from None
     except KeyboardInterrupt:
         raise KeyboardInterrupt("interrupted; no movie is written") from None
     if json:

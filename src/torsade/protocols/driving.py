@@ -17,7 +17,7 @@ from torsade.motion.moving import Motion, Outcome
 from torsade.protocols.interrupted import Interrupted
 from torsade.recording import Recording
 from torsade.results import Result
-from torsade.stopping import STOPPING, Patience
+from torsade.stopping import STOPPING, Late, Patience
 from torsade.variables import SAMPLE
 
 if TYPE_CHECKING:
@@ -55,6 +55,9 @@ def drive(
             loose_at, over = _record(spec, trial, recording, clock, patience)
             numbers = dict(trial.conclude(recording.samples(), loose_at))
             return recording.finish(numbers | ({"over_at_s": motion.time} if over else {}))
+    except Late:
+        whole = None if out is None else Path(out)
+        raise Interrupted(recording.reached, recording.done, None, whole=whole) from None
     except KeyboardInterrupt:
         recording.stop("interrupted")
         raise Interrupted(recording.reached, recording.done, recording.part) from None

@@ -143,7 +143,11 @@ def run(
         units = [Unit(p.key, p.spec) for p in points if p.key not in known]
         store = _Store(con, folder, {p.key: p for p in points}, len(there))
         options = {"workers": workers, "scheduler": scheduler, "executor": executor}
-        effort = _run(sweep, units, store, keep, options, tell) if units else Effort(0, 0, 0.0, 0.0)
+        try:
+            effort = _run(sweep, units, store, keep, options, tell) if units else Effort(0, 0, 0.0, 0.0)
+        except KeyboardInterrupt:
+            store.flush()
+            raise KeyboardInterrupt(_interrupted(store)) from None
         store.flush()
         parts.merge_all(con, folder)
     finally:
@@ -287,8 +291,7 @@ def _run(
                 store.take(work.remaining(GRACE))
             for lane in lanes:
                 lane.abandon()
-            store.flush()
-            raise KeyboardInterrupt(_interrupted(store)) from None
+            raise
         except BaseException:
             stop.set()
             store.flush()
