@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import time
 from collections import Counter
 from itertools import islice
 
@@ -11,6 +10,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from hanging import no_hang
 from topology.curves import random_loop
 from topology.drawing import shared
 from torsade.errors import TorsadeError
@@ -301,7 +301,6 @@ def test_a_search_that_is_stopped_says_so() -> None:
 
 def test_a_search_takes_about_as_long_for_large_drawings() -> None:
     """A limit of 20 stands for 4000 crossings drawn; each of these drawings has more than 1000 neighbours."""
-    start = time.perf_counter()
-    found = circulation_range(suture_diagram(11, -11), extra=2, limit=20)
+    with no_hang():
+        found = circulation_range(suture_diagram(11, -11), extra=2, limit=20)
     assert (found.crossings, found.complete) == (22, False)
-    assert time.perf_counter() - start < 3

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import random
-import time
 from collections import defaultdict
 from functools import reduce
 from importlib.resources import files
@@ -375,15 +374,3 @@ def test_diagrams_and_codes_have_one_name() -> None:
 def test_nothing_is_refused() -> None:
     with pytest.raises(TorsadeError, match="the diagram is empty"):
         identify_pd([])
-
-
-def test_it_is_quick() -> None:
-    """A diagram of 12 crossings in a few milliseconds; 50 are allowed, for busy machines."""
-    pd = with_bigon(drawn("10_165"), random.Random(1))
-    identify_pd(pd)
-    times = []
-    for _ in range(5):
-        began = time.perf_counter()
-        identify_pd(pd)
-        times.append(time.perf_counter() - began)
-    assert min(times) < 0.05

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import cmath
 import random
-import time
 from collections.abc import Sequence
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from hanging import no_hang
 from topology.drawing import (
     PD,
     braid,
@@ -232,22 +232,20 @@ def test_many_crossings() -> None:
 def test_polynomials_of_large_diagrams_come_at_once_or_not() -> None:
     """T(2, n) has V = t^((n-1)/2) (1 + t^2 - t^3 + t^4 ... - t^n); nine generators 21 times are too wide."""
     n = 1501
-    start = time.perf_counter()
-    assert jones(*braid([1] * n, 2)) == Laurent.of((n - 1) // 2, [1, 0] + [1, -1] * ((n - 1) // 2))
+    with no_hang():
+        assert jones(*braid([1] * n, 2)) == Laurent.of((n - 1) // 2, [1, 0] + [1, -1] * ((n - 1) // 2))
     wide = oriented(*braid([*range(1, 10)] * 21, 10))
     long = oriented(*braid([1, -2, 2, -1, -1, 2] * 300 + [1, -2, 3] * 100, 4))
     for code in (wide, long):
-        with pytest.raises(TorsadeError, match=f"diagram of {len(code.crossings)} crossings, .* simplify"):
+        says = f"diagram of {len(code.crossings)} crossings, .* simplify"
+        with no_hang(), pytest.raises(TorsadeError, match=says):
             jones(code)
-    assert time.perf_counter() - start < 5
 
 
 def test_the_jones_polynomial_of_a_diagram_is_computed_once() -> None:
     code, again = (oriented(*braid([1, 2, 3, 4, 5, 6] * 13, 7)) for _ in range(2))
-    jones(code)
-    start = time.perf_counter()
-    jones(again)
-    assert time.perf_counter() - start < 0.01
+    first = jones(code)
+    assert jones(again) is first  # looked up, not equal by a second computation
 
 
 # --- what is refused

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import time
 from itertools import product
 
 import pytest
 
+from hanging import no_hang
 from torsade.topology import identify, named_diagram, tangle
 from torsade.topology.codes import from_dt, from_gauss, to_dt, to_unsigned_gauss
 
@@ -45,8 +45,7 @@ def test_split_pieces_are_open_each_by_itself() -> None:
 
 def test_many_summands() -> None:
     assert len(identify(named_diagram("3_1#5_1#5_2#m7_1"), handed=False).names) == 8
-    begin = time.perf_counter()
-    found = identify(named_diagram("3_1#5_1#5_2#6_1#6_2#7_1#7_2#7_3"), handed=False)
-    assert time.perf_counter() - begin < 5
+    with no_hang():
+        found = identify(named_diagram("3_1#5_1#5_2#6_1#6_2#7_1#7_2#7_3"), handed=False)
     assert (len(found.names), found.certain) == (1, False)
     assert "of the others one choice out of many" in found.reason

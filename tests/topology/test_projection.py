@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from hanging import no_hang
 from topology.invariants import determinant, signature
 from torsade.errors import TorsadeError
 from torsade.knots import bend
@@ -324,21 +324,15 @@ def test_curves_that_make_no_sense(strands: Any, closed: Any, direction: Any, sa
     assert "\n" not in str(caught.value)
 
 
-# --- speed
+# --- size
 
 
-def test_two_hundred_nodes_take_milliseconds_and_ten_thousand_work() -> None:
-    """Measured: 1 ms for 200 nodes, 0.3 s for 10,000 nodes with 14,000 crossings; far more is allowed."""
-    x = torus_knot(2, 3, 200)
-    begin = time.perf_counter()
-    for _ in range(10):
-        simplify(project([x], closed=True).diagram)
-    assert (time.perf_counter() - begin) / 10 < 0.05
+def test_ten_thousand_nodes() -> None:
+    """A random walk, with about 14,000 crossings."""
     rng = np.random.default_rng(0)
     long = np.cumsum(rng.normal(size=(10_000, 3)), axis=0)
-    begin = time.perf_counter()
-    seen = project([long])
-    assert time.perf_counter() - begin < 5
+    with no_hang():
+        seen = project([long])
     assert seen.diagram.n_crossings > 5000
     assert seen.diagram.genus == 0
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import time
-
 import pytest
 
+from hanging import no_hang
 from topology.drawings import closed_knots
 from torsade.errors import TorsadeError
 from torsade.topology import Diagram, identify, is_isomorphic
@@ -139,13 +138,11 @@ def test_numbers_that_may_be_one_or_two_are_refused(text: str) -> None:
     ],
 )  # fmt: skip
 def test_too_large_codes_are_refused_at_once(text: str, says: str) -> None:
-    begin = time.perf_counter()
-    with pytest.raises(TorsadeError) as caught:
+    with no_hang(), pytest.raises(TorsadeError) as caught:
         from_text(text)
     assert says in str(caught.value)
     assert len(str(caught.value)) < 400
     assert "\n" not in str(caught.value)
-    assert time.perf_counter() - begin < 1
 
 
 def test_signs_do_not_nest() -> None:
@@ -199,11 +196,10 @@ def test_lists_that_can_only_be_conway_notation() -> None:
     ]
 
 
-def test_counting_passages_is_quick() -> None:
+def test_counting_passages_of_a_long_code() -> None:
     code = " ".join(f"O{k}+ U{k}+" for k in range(2000))
-    begin = time.perf_counter()
-    assert from_gauss(code).n_crossings == 2000
-    assert time.perf_counter() - begin < 1
+    with no_hang():
+        assert from_gauss(code).n_crossings == 2000
 
 
 @pytest.mark.parametrize("name", closed_knots())
