@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-__all__ = ["BYTES_PER_NODE", "FORMAT", "SAMPLE", "SINGLE_PRECISION", "VARIABLES"]
+__all__ = ["BYTES_PER_NODE", "ENDS", "FORMAT", "SAMPLE", "SINGLE_PRECISION", "VARIABLES"]
 
 FORMAT = 1
 """Of results, counted up whenever a reader of an earlier one would misunderstand it."""
+
+ENDS = {"time": "done", "sample": "sampled"}
+"""Dimensions along which a run grows, and the attributes that say how far it has."""
 
 _CHARGE = "charge"
 """Dimension of what is recorded before t = 0, when a battery is charged."""

@@ -232,13 +232,13 @@ def test_ctrl_c_says_how_many_runs_are_stored(tmp_path, stored_reef):
 
 
 def test_ctrl_c_at_the_end_of_a_run_keeps_the_next_from_beginning(tmp_path, monkeypatch):
-    complete = store.complete
+    give_name = store.give_name
 
     def then_stopped(*arguments):
-        complete(*arguments)
+        give_name(*arguments)
         signal.raise_signal(signal.SIGINT)
 
-    monkeypatch.setattr(store, "complete", then_stopped)
+    monkeypatch.setattr(store, "give_name", then_stopped)
     with pytest.raises(KeyboardInterrupt) as stopped:
         results({"reef": short("reef"), "thief": short("thief")}, tmp_path, workers=1)
     said = f"interrupted; 1 of 2 runs is stored in {str(tmp_path)!r}; the same command goes on"

@@ -1,0 +1,113 @@
+"""Files of arrays against zarr, which writes the same of the same numbers, to the bit."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+import zarr
+from zarr.codecs import BloscCodec, Crc32cCodec, ZstdCodec
+
+import torsade as ts
+from torsade import store, zarr_files
+
+BLOSC = BloscCodec(cname="zstd", clevel=5, shuffle="bitshuffle")
+ZSTD = ZstdCodec(level=0)
+
+
+@pytest.fixture
+def dataset() -> xarray.Dataset:
+    """Numbers of every kind that results have, one that takes several files, one that is empty."""
+    rng = np.random.default_rng(7)
+    about = {"units": "1", "long_name": "numbers"}
+    variables = {
+        "position": (("time", "node", "space"), rng.normal(size=(50, 300, 3)).astype(np.float32)),
+        "twist": (("time", "fiber"), rng.normal(size=(50, 2))),
+        "zeros": (("time", "node"), np.zeros((50, 300), np.float32)),
+        "unknown": ("time", np.full(50, np.nan)),
+        "node_start": ("fiber_bound", np.array([0, 100, 300])),
+        "count": ("fiber", np.array([3, 4], np.uint8)),
+        "closed": ("fiber", np.array([False, True])),
+        "number": ((), np.array(2.5)),
+        "nothing": (("time", "none"), np.zeros((50, 0))),
+    }
+    labelled = {name: (dims, values, about) for name, (dims, values) in variables.items()}
+    attrs = {"protocol": "tighten", "spec": "{}", "status": "complete", "versions": {}, "c_f": np.float64(3)}
+    return xarray.Dataset(labelled, coords={"time": np.linspace(0, 1, 50)}, attrs=attrs)
+
+
+def by_zarr(dataset: xarray.Dataset, path: Path) -> None:
+    """The same numbers, in pieces of the same shape, written by zarr."""
+    group = zarr.create_group(path)
+    for name, variable in dataset.variables.items():
+        about = zarr_files.described(variable, str(name))
+        array = group.create_array(
+            str(name),
+            shape=variable.shape,
+            dtype=variable.dtype,
+            chunks=tuple(about["chunk_grid"]["configuration"]["chunk_shape"]),
+            compressors=[BLOSC if variable.dtype == np.float32 else ZSTD, Crc32cCodec()],
+            fill_value=np.nan if variable.dtype.kind == "f" else 0,
+            dimension_names=[str(dim) for dim in variable.dims],
+            attributes=dict(variable.attrs),
+            config={"write_empty_chunks": True},
+        )
+        array[...] = variable.values
+    group.update_attributes(
+        {name: getattr(value, "item", lambda v=value: v)() for name, value in dataset.attrs.items()}
+    )
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Consolidated metadata")
+        zarr.consolidate_metadata(str(path))
+
+
+def test_zarr_writes_the_same_files(dataset: xarray.Dataset, tmp_path: Path) -> None:
+    dataset = dataset.drop_vars(
+        "number"
+    )  # zarr says nothing of its dimensions, and readers here want to know
+    store.create(dataset, tmp_path / "ours")
+    by_zarr(dataset, tmp_path / "theirs")
+    ours, theirs = (
+        {str(f.relative_to(tmp_path / who)): f for f in (tmp_path / who).rglob("*") if f.is_file()}
+        for who in ("ours", "theirs")
+    )
+    assert set(ours) == set(theirs)
+    assert len([name for name in ours if name.startswith("position/c")]) == 3
+    for name in ours:
+        if name.endswith("zarr.json"):
+            mine, yours = (json.loads(f[name].read_text()) for f in (ours, theirs))
+            mine["attributes"].pop("chunks", None)
+            assert mine == yours, name
+        else:
+            assert ours[name].read_bytes() == theirs[name].read_bytes(), name
+
+
+def test_xarray_reads_what_was_written(dataset: xarray.Dataset, tmp_path: Path) -> None:
+    store.create(dataset, tmp_path / "a.zarr")
+    with xarray.open_zarr(tmp_path / "a.zarr", chunks=None) as read:
+        assert read.attrs.pop("chunks") == store.chunk_files(tmp_path / "a.zarr")
+        assert read.load().identical(dataset)
+    assert ts.open(tmp_path / "a.zarr").dataset.identical(dataset)
+
+
+@pytest.mark.parametrize("order", [">f8", "<f8"])
+def test_numbers_lie_in_one_order_of_bytes(order: str, tmp_path: Path) -> None:
+    values = np.linspace(0, 1, 5).astype(order)
+    attrs = {"protocol": "tighten", "spec": "{}", "status": "complete", "versions": {}}
+    store.create(xarray.Dataset(coords={"time": values[::-1]}, attrs=attrs), tmp_path / "a.zarr")
+    np.testing.assert_array_equal(ts.open(tmp_path / "a.zarr").dataset["time"], values[::-1])
+
+
+def test_what_is_no_number_is_refused(tmp_path: Path) -> None:
+    words = xarray.Dataset({"name": ("x", np.array(["a", "b"]))})
+    with pytest.raises(
+        ts.TorsadeError, match=r"'name' holds str.*, and only numbers are stored; leave it out"
+    ):
+        store.create(words, tmp_path / "a.zarr")
+    with pytest.raises(ts.TorsadeError, match=r"cannot write .*; give a place with room"):
+        store.create(words.drop_vars("name"), tmp_path / "none" / "a.zarr")
+    assert list(tmp_path.iterdir()) == []
