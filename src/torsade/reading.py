@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from torsade.errors import TorsadeError
 from torsade.variables import ENDS, VARIABLES
 from torsade.vetting import Stored, check_files, grown, sound_rows, vetted
-from torsade.zarr_files import file_count
 
 if TYPE_CHECKING:
     import xarray
@@ -67,20 +66,19 @@ def read(path: Path, at_once: int, in_all: int, salvage: bool = False) -> tuple[
 
 
 def _cut(path: Path, attrs: dict[str, Any], described: dict[str, Stored], counts: dict[str, Any]) -> None:
-    """Change attributes and counts of files to what there is before the first file that is lost."""
-    sound = dict(attrs)
+    """Change attributes to what there is before the first file that is lost; of that no file is missing."""
+    ends = {name: attrs[name] for name in ENDS.values() if name in attrs}
+    known = []
     for name, about in described.items():
         upto = grown(about, attrs)
-        if upto is not None:
-            end = ENDS[about.dims[0]]
-            sound[end] = min(sound[end], sound_rows(path, name, about, counts.get(name), upto))
-    if sound.get("done") == 0 or sound == attrs:
-        return
-    for name, about in described.items():
-        upto = grown(about, sound)
-        if upto is not None and upto != grown(about, attrs) and name in counts:
-            counts[name] = file_count((upto, *about.shape[1:]), about.chunk)
-    attrs |= sound
+        rows = None if upto is None else sound_rows(path, name, about, counts.get(name), upto)
+        if rows is not None:
+            known.append(name)
+            ends[ENDS[about.dims[0]]] = min(ends[ENDS[about.dims[0]]], rows)
+    if ends.get("done"):
+        attrs |= ends
+        for name in known:
+            counts.pop(name, None)
 
 
 def _large(described: dict[str, Stored], upto: dict[str, int], at_once: int, in_all: int) -> set[str]:

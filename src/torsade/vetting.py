@@ -59,6 +59,9 @@ KINDS: Mapping[str, tuple[type, ...]] = {
 }
 """Of attributes that a result may have."""
 
+BEFORE = " (info, export and open take the frames before with --salvage, ts.open with salvage=True)"
+"""What can be done about files that are lost."""
+
 NEEDED = ("protocol", "spec", "status")
 """Attributes without which nobody knows what it is."""
 
@@ -153,13 +156,13 @@ def check_files(path: Path, name: str, about: Stored, count: object = None, upto
                 raise _UnfitError(f"{str(file.relative_to(path))!r} does not unpack to what belongs there")
         number = sum(_pieces(path / name, about, upto).values())
         if count is not None and count != number:
-            sound = 0 if upto is None else sound_rows(path, name, about, count, upto)
-            rest = f" (--salvage, salvage=True, opens the {sound} rows before what is lost)" if sound else ""
+            sound = None if upto is None else sound_rows(path, name, about, count, upto)
+            rest = "" if sound is None or (sound == 0 and about.dims[0] == "time") else BEFORE
             raise _UnfitError(f"{name!r} lies in {number} files and should lie in {quoted(count)}{rest}")
 
 
-def sound_rows(path: Path, name: str, about: Stored, count: object, upto: int) -> int:
-    """How many rows of a variable come before the first file that is lost; 0 where nobody can tell.
+def sound_rows(path: Path, name: str, about: Stored, count: object, upto: int) -> int | None:
+    """How many rows of a variable come before the first file that is lost; None where nobody can tell.
 
     Parameters
     ----------
@@ -171,8 +174,8 @@ def sound_rows(path: Path, name: str, about: Stored, count: object, upto: int) -
     of_each = file_count(about.shape[1:], about.chunk[1:])
     pieces = -(-upto // about.chunk[0])
     if count != pieces * of_each:  # earlier versions left out files of zeros
-        return 0
-    return about.chunk[0] * next(k for k in range(pieces) if held[k] < of_each)
+        return None
+    return about.chunk[0] * next((k for k in range(pieces) if held[k] < of_each), pieces)
 
 
 def _pieces(array: Path, about: Stored, upto: int | None) -> Counter[int]:

@@ -23,10 +23,10 @@ from torsade.results import Result, open_result
 __all__ = ["export", "info", "show"]
 
 
-def info(given: str, json: bool) -> int:
+def info(given: str, json: bool, salvage: bool = False) -> int:
     """Say what a result is."""
     path = _found(given)
-    result = open_result(path)
+    result = open_result(path, salvage=salvage)
     about = _about(path, result)
     if json:
         print(json_format.dumps(_finite(about), allow_nan=False), flush=True)
@@ -44,13 +44,21 @@ def info(given: str, json: bool) -> int:
     return 0
 
 
-def export(given: str, to: str, frames: str | None, out: str | None, json: bool, overwrite: bool) -> int:
+def export(
+    given: str,
+    to: str,
+    frames: str | None,
+    out: str | None,
+    json: bool,
+    overwrite: bool,
+    salvage: bool = False,
+) -> int:
     """Write a result for other programs, and say what was written."""
     from torsade.export import FORMATS
     from torsade.export import export as write
 
     path = _found(given)
-    result = open_result(path)
+    result = open_result(path, salvage=salvage)
     if out is None:
         out = str(path.with_name(path.name.removesuffix(".part").removesuffix(".zarr") + FORMATS.get(to, "")))
     try:
@@ -68,13 +76,13 @@ def export(given: str, to: str, frames: str | None, out: str | None, json: bool,
     return 0
 
 
-def show(given: str, frame: str | None, picture: str | None, json: bool) -> int:
+def show(given: str, frame: str | None, picture: str | None, json: bool, salvage: bool = False) -> int:
     """Show a result in a window, or draw it."""
     if frame is not None and not re.fullmatch(r"-?\d{1,9}", frame.strip(), re.A):
         raise TorsadeError(f"--frame is {quoted(frame)}; give a number such as 10, or -1 for the last frame")
     check_drawings(picture, None)
     path = _found(given)
-    result = open_result(path)
+    result = open_result(path, salvage=salvage)
     if result.frames == 0:
         raise TorsadeError(f"{str(path)!r} has no frame yet; wait for one")
     result.show(picture, None if frame is None else int(frame))

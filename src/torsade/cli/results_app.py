@@ -29,6 +29,7 @@ torsade open reef.zarr
 torsade open reef.zarr --frame 10 --picture reef.png"""
 
 _JSON = "Print JSON, and nothing else, on the standard output."
+_SALVAGE = "Where files of numbers are lost, take the frames before."
 _RESULT = "A result: NAME.zarr, or NAME.zarr.part of a run that goes on or was interrupted."
 
 
@@ -44,6 +45,7 @@ def _info(
     /,
     *,
     json: Annotated[bool, Parameter(help=_JSON)] = False,
+    salvage: Annotated[bool, Parameter(help=_SALVAGE)] = False,
 ) -> int:
     """Say what a result holds: what was run, how far it came, its numbers, where they come from.
 
@@ -51,7 +53,7 @@ def _info(
     """
     from torsade.cli.results import info
 
-    return info(given, json)
+    return info(given, json, salvage)
 
 
 def _export(
@@ -83,6 +85,7 @@ def _export(
     ] = None,
     json: Annotated[bool, Parameter(help=_JSON)] = False,
     overwrite: Annotated[bool, Parameter(help="Replace files that exist.")] = False,
+    salvage: Annotated[bool, Parameter(help=_SALVAGE)] = False,
 ) -> int:
     """Write a result for other programs.
 
@@ -90,7 +93,7 @@ def _export(
     """
     from torsade.cli.results import export
 
-    return export(given, to, frames, out, json, overwrite)
+    return export(given, to, frames, out, json, overwrite, salvage)
 
 
 def _open(
@@ -109,6 +112,7 @@ def _open(
         str | None, Parameter(help="Draw to this PNG file, in place of opening a window.")
     ] = None,
     json: Annotated[bool, Parameter(help=_JSON)] = False,
+    salvage: Annotated[bool, Parameter(help=_SALVAGE)] = False,
 ) -> int:
     """Show the frames of a result in a window that can be turned, or draw one of them to a file.
 
@@ -116,4 +120,4 @@ def _open(
     """
     from torsade.cli.results import show
 
-    return show(given, frame, picture, json)
+    return show(given, frame, picture, json, salvage)
