@@ -1,4 +1,4 @@
-"""Files of numbers that are lost, of runs that grow, are to be gone on with, or are complete: it is noticed."""
+"""Files of numbers that are lost, from runs that grow, are to be gone on with, or are complete."""
 
 from __future__ import annotations
 
@@ -177,7 +177,7 @@ SHORT["tighten"].run(out=sys.argv[1])
 def test_a_run_killed_between_files_is_not_taken_for_damaged(
     writes: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Beside files that are counted there are some that no attribute counts yet; a lost one is noticed still."""
+    """Beside files that are counted lie some that no attribute counts yet; a lost one is noticed still."""
     few_frames_in_a_file(monkeypatch)
     out, part = tmp_path / "run.zarr", tmp_path / "run.zarr.part"
     script = [sys.executable, "-c", KILLED, str(out), str(zarr_files.CHUNK_BYTES), str(writes)]
