@@ -266,7 +266,10 @@ class Battery(Driven):
         motion = Motion(assembly, self.model(), ends.free(assembly), state, self.stepping)
         unit = self.unit_time
         longest = LONGEST * unit if self.charging is None else self.charging
-        return motion, charge(motion, self.fiber_material, self.section, unit, longest, tell)
+        try:
+            return motion, charge(motion, self.fiber_material, self.section, unit, longest, tell)
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt("while the battery was charged, which is always done anew") from None
 
     def trial(self) -> Trial:
         return self.prepared(SILENT)

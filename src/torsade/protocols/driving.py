@@ -39,8 +39,8 @@ def drive(
     tell = progress or (lambda share, note: None)
     try:
         trial = spec.prepared(tell)
-    except KeyboardInterrupt:
-        raise Interrupted(0.0, 0, None, earlier=_begun(out)) from None
+    except KeyboardInterrupt as stopped:
+        raise Interrupted(0.0, 0, None, earlier=_begun(out), when=str(stopped)) from None
     motion = trial.motion
     recording = _begin(spec, trial, out, resume, overwrite)
     try:
