@@ -15,7 +15,7 @@ from zarr.codecs import BloscCodec, Crc32cCodec, ZstdCodec
 import torsade as ts
 from torsade import store, zarr_files
 
-BLOSC = BloscCodec(cname="zstd", clevel=5, shuffle="bitshuffle")
+BLOSC = BloscCodec(cname="zstd", clevel=zarr_files.LEVEL, shuffle="bitshuffle")
 ZSTD = ZstdCodec(level=0)
 
 
@@ -108,6 +108,12 @@ def test_what_is_no_number_is_refused(tmp_path: Path) -> None:
         ts.TorsadeError, match=r"'name' holds str.*, and only numbers are stored; leave it out"
     ):
         store.create(words, tmp_path / "a.zarr")
+    named = xarray.Dataset({"../name": ("x", np.zeros(3))})
+    with pytest.raises(ts.TorsadeError, match=r"a variable is called '../name'; give it a name that"):
+        store.create(named, tmp_path / "a.zarr")
+    odd = xarray.Dataset({"number": ("x", np.zeros(3))}, attrs={"made": object})
+    with pytest.raises(ts.TorsadeError, match=r"an attribute is <class 'object'>; give numbers, text"):
+        store.create(odd, tmp_path / "a.zarr")
     with pytest.raises(ts.TorsadeError, match=r"cannot write .*; give a place with room"):
         store.create(words.drop_vars("name"), tmp_path / "none" / "a.zarr")
     assert list(tmp_path.iterdir()) == []

@@ -162,7 +162,7 @@ def _run(spec: Spec, out: str | None, resume: bool, overwrite: bool, quiet: bool
             raise KeyboardInterrupt(
                 f"{error}, and the same command with --resume goes on from there"
             ) from None
-        if out is None and getattr(error, "frames", 0):
+        if out is None and getattr(error, "frames", None):
             raise KeyboardInterrupt(f"{error}; give --out NAME.zarr to keep what is done") from None
         raise
 
