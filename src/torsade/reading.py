@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade.errors import TorsadeError
-from torsade.variables import ENDS, VARIABLES
-from torsade.vetting import Stored, check_files, grown, sound_rows, vetted
+from torsade.variables import ENDS, VARIABLES, grown
+from torsade.vetting import Stored, check_files, sound_rows, vetted
 
 if TYPE_CHECKING:
     import xarray
@@ -46,18 +46,16 @@ def read(path: Path, at_once: int, in_all: int, salvage: bool = False) -> tuple[
     late = _large(described, upto, at_once, in_all)
     for name, about in described.items():
         if name not in late:
-            check_files(path, name, about, counts.get(name), grown(about, attrs))
+            check_files(path, name, about, counts.get(name), grown(about.dims, attrs))
     with _sound(path), _quiet():
         opened = xarray.open_dataset(
             path, engine="zarr", chunks=None, consolidated=False, decode_times=False, decode_timedelta=False
         )
         order = [name for name in VARIABLES if name in described]
-        whole = {
-            name: _late(path, name, described[name], counts, attrs, opened.variables[name])
-            if name in late
-            else opened.variables[name]
-            for name in dict.fromkeys([*order, *described])
-        }
+        whole = {name: opened.variables[name] for name in dict.fromkeys([*order, *described])}
+        for name in late:
+            about, count = described[name], counts.get(name)
+            whole[name] = _late(whole[name], path, name, about, count, grown(about.dims, attrs))
         dataset = xarray.Dataset(whole, attrs=attrs).set_coords(list(opened.coords))
         dataset = dataset.isel({dim: slice(0, n) for dim, n in upto.items() if dim in dataset.dims})
         for at_hand in set(dataset.variables) - late:
@@ -70,7 +68,7 @@ def _cut(path: Path, attrs: dict[str, Any], described: dict[str, Stored], counts
     ends = {name: attrs[name] for name in ENDS.values() if name in attrs}
     known = []
     for name, about in described.items():
-        upto = grown(about, attrs)
+        upto = grown(about.dims, attrs)
         rows = None if upto is None else sound_rows(path, name, about, counts.get(name), upto)
         if rows is not None:
             known.append(name)
@@ -124,19 +122,12 @@ def _sound(path: Path, name: str | None = None) -> Iterator[None]:
 
 
 def _late(
-    path: Path,
-    name: str,
-    about: Stored,
-    counts: dict[str, Any],
-    attrs: dict[str, Any],
-    variable: xarray.Variable,
+    variable: xarray.Variable, path: Path, name: str, about: Stored, count: object, upto: int | None
 ) -> xarray.Variable:
-    """A variable that is read, and its files looked at, when it is used."""
+    """A variable that is read, and its files looked at, when it is used; see `check_files`."""
     import xarray
     from xarray.backends import BackendArray
     from xarray.core import indexing
-
-    upto = grown(about, attrs)
 
     class Late(BackendArray):
         shape, dtype = variable.shape, variable.dtype
@@ -148,7 +139,7 @@ def _late(
 
         def numbers(self, key: Any) -> NDArray[Any]:
             if not self.looked_at:
-                check_files(path, name, about, counts.get(name), upto)
+                check_files(path, name, about, count, upto)
                 self.looked_at = True
             with _sound(path, name):
                 return np.asarray(variable[key].values)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -16,7 +15,7 @@ from numpy.typing import NDArray
 
 from torsade import places, provenance, store, vetting
 from torsade.arrays import Floats
-from torsade.errors import TorsadeError, counted, quoted
+from torsade.errors import TorsadeError, counted
 from torsade.results import Result
 from torsade.variables import FORMAT, SAMPLE, SINGLE_PRECISION, VARIABLES
 
@@ -33,8 +32,6 @@ PROGRESS = ("done", "sampled", "wall", "steps")
 
 NEEDED = ("created", "done", "machine", "resumed", "spec", "status", "steps", "sampled", "wall_s")
 """Attributes without which a run cannot be gone on with."""
-
-ANEW = "give --overwrite (overwrite=True) in place of resume to begin anew"
 
 Frame = Mapping[str, "float | Floats"]
 
@@ -142,7 +139,7 @@ class Recording:
         if found is None or found.get("status") != "complete" or places.part_of(out).exists():
             return False
         found, _ = vetting.vetted(out)
-        _same_run(self.attrs, found, out)
+        provenance.check_same_run(self.attrs, found, out)
         self._out, self.complete = out, True
         return True
 
@@ -152,7 +149,7 @@ class Recording:
         missing = [name for name in NEEDED if name not in found]
         if missing:
             raise TorsadeError(f"{str(part)!r} does not say {missing[0]!r}; give --overwrite to begin anew")
-        _same_run(self.attrs, found, part)
+        provenance.check_same_run(self.attrs, found, part)
         provenance.check_same(found, part)
         for name in ("created", "versions", "machine", "resumed"):
             self.attrs[name] = found[name]
@@ -178,7 +175,7 @@ class Recording:
         else:
             raise TorsadeError(
                 f"{str(part)!r} holds {counted(found['done'], 'frame')}, but no state to go on from; open it "
-                f"for the frames, or {ANEW}"
+                f"for the frames, or {provenance.ANEW}"
             )
 
     def _take_over(self, part: Path) -> None:
@@ -315,12 +312,13 @@ class Recording:
         self._complement()
         self.attrs.update({"status": "complete"} | dict(numbers))
         self.attrs.update(self._progress())
-        if self._out is not None and self.part is None:
-            self._begin_folder(self._sizes())
-            store.give_name(places.part_of(self._out), self._out)
-        elif self._out is not None and self.part is not None:
-            self._append()
-            store.complete(self.part, self._out, self._sizes(), self.attrs)
+        if self._out is not None:
+            if self.part is None:
+                self._begin_folder(self._sizes())
+                store.give_name(places.part_of(self._out), self._out)
+            else:
+                self._append()
+                store.complete(self.part, self._out, self._sizes(), self.attrs)
         self.complete = True
         return self.result()
 
@@ -375,34 +373,7 @@ def _or_anew() -> Iterator[None]:
     try:
         yield
     except TorsadeError as error:
-        raise TorsadeError(f"{error}; {ANEW}") from None
-
-
-def _same_run(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) -> None:
-    """Refuse to go on with the frames of another run, naming the first thing that differs."""
-    mine, theirs = json.loads(asked["spec"]), json.loads(found["spec"])
-    for name in sorted(mine.keys() | theirs.keys()):
-        # A centerline may have been moved; what it says is in the hash of the start.
-        if mine.get(name) != theirs.get(name) and not (name == "centerline" and name in mine.keys() & theirs):
-            raise TorsadeError(
-                f"{str(path)!r} was begun with {name} = {theirs.get(name)!r}, not {mine.get(name)!r}; "
-                f"resume with the same specification, or {ANEW}"
-            )
-    mine, theirs = (json.loads(attrs.get("model", "{}")) for attrs in (asked, found))
-    for name in mine:
-        if mine[name] != theirs.get(name):
-            raise TorsadeError(
-                f"{str(path)!r} was begun when {name} meant {_brief(theirs.get(name))}, and now it means "
-                f"{_brief(mine[name])}; {ANEW}"
-            )
-    if asked["start"] != found.get("start"):
-        raise TorsadeError(
-            f"{str(path)!r} was begun from other node positions; give the same centerline, or {ANEW}"
-        )
-
-
-def _brief(value: object) -> str:
-    return quoted(value, 200)
+        raise TorsadeError(f"{error}; {provenance.ANEW}") from None
 
 
 def _now() -> str:

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from torsade import zarr_files
 from torsade.errors import TorsadeError
 from torsade.places import private, replace, writing
-from torsade.variables import ENDS
+from torsade.variables import ENDS, grown
 
 if TYPE_CHECKING:
     import xarray
@@ -73,7 +73,9 @@ def create(dataset: xarray.Dataset, path: Path) -> None:
             for name, about in arrays.items():
                 zarr_files.write_description(path / name, about)
                 values = dataset.variables[name].values
-                zarr_files.write_array(path / name, about, values, last=_written(about, dataset.attrs))
+                zarr_files.write_array(
+                    path / name, about, values, last=grown(about["dimension_names"], dataset.attrs)
+                )
             zarr_files.write_group(path, dataset.attrs | {"chunks": _counted(arrays, dataset.attrs)}, arrays)
         except BaseException:
             shutil.rmtree(path, ignore_errors=True)
@@ -109,16 +111,11 @@ def set_attributes(path: Path, changed: Mapping[str, Any]) -> None:
         zarr_files.write_group(path, attrs, described)
 
 
-def _written(about: Mapping[str, Any], attrs: Mapping[str, Any]) -> int | None:
-    """How many rows of an array there are; None where it does not grow."""
-    return attrs.get(ENDS.get(next(iter(about["dimension_names"]), ""), ""))
-
-
 def _counted(described: Mapping[str, Any], attrs: Mapping[str, Any]) -> dict[str, int]:
     """How many files hold what there is of every array."""
     counts = {}
     for name, about in sorted(described.items()):
-        shape, upto = about["shape"], _written(about, attrs)
+        shape, upto = about["shape"], grown(about["dimension_names"], attrs)
         if upto is not None:
             shape = [min(upto, shape[0]), *shape[1:]]
         counts[name] = zarr_files.file_count(shape, about["chunk_grid"]["configuration"]["chunk_shape"])

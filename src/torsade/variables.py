@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
-__all__ = ["BYTES_PER_NODE", "ENDS", "FORMAT", "SAMPLE", "SINGLE_PRECISION", "VARIABLES"]
+__all__ = ["BYTES_PER_NODE", "ENDS", "FORMAT", "SAMPLE", "SINGLE_PRECISION", "VARIABLES", "grown"]
 
 FORMAT = 1
 """Of results, counted up whenever a reader of an earlier one would misunderstand it."""
@@ -127,3 +128,9 @@ BYTES_PER_NODE = sum(
 
 SAMPLE = "sample_"
 """Beginning of the names of samples."""
+
+
+def grown(dims: Sequence[str], attributes: Mapping[str, Any]) -> int | None:
+    """How many rows there are of what has these dimensions; None where it does not grow."""
+    count: int | None = attributes.get(ENDS.get(dims[0], "")) if dims else None
+    return count

@@ -19,10 +19,10 @@ from typing import Any, NamedTuple
 from torsade.errors import TorsadeError, quoted, reason_of
 from torsade.places import LARGEST_DESCRIPTION, attributes
 from torsade.store import chunks_of
-from torsade.variables import ENDS, FORMAT
+from torsade.variables import FORMAT
 from torsade.zarr_files import NUMBERS, file_count
 
-__all__ = ["Stored", "check_files", "grown", "sound_rows", "vetted"]
+__all__ = ["Stored", "check_files", "sound_rows", "vetted"]
 
 LARGEST_VARIABLE = 8_000_000_000
 """Largest variable [bytes]: a run holds no more than half of it in memory."""
@@ -126,11 +126,6 @@ def vetted(path: Path) -> tuple[dict[str, Any], dict[str, Stored]]:
         if "time" not in stored or stored["time"].dims != ("time",):
             raise _UnfitError("it has no times of frames")
     return found, stored
-
-
-def grown(about: Stored, found: Mapping[str, Any]) -> int | None:
-    """How many rows of a variable there are by the attributes of a result; None where they do not say."""
-    return found.get(ENDS.get(about.dims[0], "")) if about.dims else None
 
 
 def check_files(path: Path, name: str, about: Stored, count: object = None, upto: int | None = None) -> None:

@@ -23,7 +23,7 @@ from torsade.results import Result, open_result
 __all__ = ["export", "info", "show"]
 
 
-def info(given: str, json: bool, salvage: bool = False) -> int:
+def info(given: str, json: bool, salvage: bool) -> int:
     """Say what a result is."""
     path = _found(given)
     result = open_result(path, salvage=salvage)
@@ -51,7 +51,7 @@ def export(
     out: str | None,
     json: bool,
     overwrite: bool,
-    salvage: bool = False,
+    salvage: bool,
 ) -> int:
     """Write a result for other programs, and say what was written."""
     from torsade.export import FORMATS
@@ -76,7 +76,7 @@ def export(
     return 0
 
 
-def show(given: str, frame: str | None, picture: str | None, json: bool, salvage: bool = False) -> int:
+def show(given: str, frame: str | None, picture: str | None, json: bool, salvage: bool) -> int:
     """Show a result in a window, or draw it."""
     if frame is not None and not re.fullmatch(r"-?\d{1,9}", frame.strip(), re.A):
         raise TorsadeError(f"--frame is {quoted(frame)}; give a number such as 10, or -1 for the last frame")
