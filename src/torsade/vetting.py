@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from torsade.errors import TorsadeError, quoted, reason_of
+from torsade.errors import TorsadeError, counted, quoted, reason_of
 from torsade.places import LARGEST_DESCRIPTION, attributes
 from torsade.store import chunks_of
 from torsade.variables import FORMAT
@@ -153,7 +153,8 @@ def check_files(path: Path, name: str, about: Stored, count: object = None, upto
         if count is not None and count != number:
             sound = None if upto is None else sound_rows(path, name, about, count, upto)
             rest = "" if sound is None or (sound == 0 and about.dims[0] == "time") else BEFORE
-            raise _UnfitError(f"{name!r} lies in {number} files and should lie in {quoted(count)}{rest}")
+            lies = f"{name!r} lies in {counted(number, 'file')} and should lie in {quoted(count)}"
+            raise _UnfitError(f"{lies}{rest}")
 
 
 def sound_rows(path: Path, name: str, about: Stored, count: object, upto: int) -> int | None:
