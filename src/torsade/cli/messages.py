@@ -108,9 +108,11 @@ COMMANDS = MappingProxyType(
             "nothing is given; give the folder of a sweep, such as pieces",
             "{} comes after the query; put the whole query in one pair of quotes",
         ),
-        "info": _Command((), ("--json",), _NO_RESULT, _RESULT),
-        "export": _Command(("--to", "--frames", "--out"), ("--json", "--overwrite"), _NO_EXPORT, _RESULT),
-        "open": _Command(("--frame", "--picture"), ("--json",), _NO_RESULT, _RESULT),
+        "info": _Command((), ("--json", "--salvage"), _NO_RESULT, _RESULT),
+        "export": _Command(
+            ("--to", "--frames", "--out"), ("--json", "--overwrite", "--salvage"), _NO_EXPORT, _RESULT
+        ),
+        "open": _Command(("--frame", "--picture"), ("--json", "--salvage"), _NO_RESULT, _RESULT),
         "movie": _Command(
             ("--out", "--seconds", "--fps", "--size", "--frames", "--colour"),
             ("--whole", "--json"),
