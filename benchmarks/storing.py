@@ -1,4 +1,4 @@
-"""What storing a run costs: files written as `torsade.zarr_files` does, and the same by zarr and xarray.
+"""What storing a run costs: files that zarr makes in memory, and the same written by zarr and xarray.
 
 Both write folders that plain xarray opens, from the same numbers. A short run is written once at its end; by
 zarr, as runs did before, its folder is made at the start, and grows with the first frame and with the last. A
@@ -46,12 +46,12 @@ class ByZarr:
     def create(dataset: xarray.Dataset, path: Path) -> None:
         encoding: dict[str, dict[str, Any]] = {}
         for name, variable in dataset.variables.items():
-            chunk = zarr_files.described(variable, str(name))["chunk_grid"]["configuration"]["chunk_shape"]
             single = variable.dtype == np.float32
             packing = (
                 BloscCodec(cname="zstd", clevel=5, shuffle="bitshuffle") if single else ZstdCodec(level=0)
             )
-            encoding[str(name)] = {"compressors": [packing, Crc32cCodec()], "chunks": tuple(chunk)}
+            chunks = zarr_files.chunk_shape(variable)
+            encoding[str(name)] = {"compressors": [packing, Crc32cCodec()], "chunks": chunks}
         beyond = {
             name: (variable.dims, np.full(variable.shape, np.nan, variable.dtype), variable.attrs)
             for name, variable in dataset.variables.items()

@@ -28,6 +28,7 @@ from torsade.variables import ENDS, grown
 
 if TYPE_CHECKING:
     import xarray
+    import zarr
 
 __all__ = [
     "append",
@@ -64,19 +65,14 @@ def create(dataset: xarray.Dataset, path: Path) -> None:
     TorsadeError
         When it cannot be written, or a variable does not hold numbers.
     """
-    arrays = {
-        str(name): zarr_files.described(variable, str(name)) for name, variable in dataset.variables.items()
-    }
     with writing(path):
         path.mkdir()
         try:
-            for name, about in arrays.items():
-                zarr_files.write_description(path / name, about)
-                values = dataset.variables[name].values
-                zarr_files.write_array(
-                    path / name, about, values, last=grown(about["dimension_names"], dataset.attrs)
-                )
-            zarr_files.write_group(path, dataset.attrs | {"chunks": _counted(arrays, dataset.attrs)}, arrays)
+            with zarr_files.opened(path, whole=True) as group:
+                for name, variable in dataset.variables.items():
+                    upto = grown([str(dim) for dim in variable.dims], dataset.attrs)
+                    zarr_files.add(group, str(name), variable, upto)
+                zarr_files.set_attributes(group, dataset.attrs | {"chunks": _counted(group, dataset.attrs)})
         except BaseException:
             shutil.rmtree(path, ignore_errors=True)
             raise
@@ -95,30 +91,28 @@ def save(dataset: xarray.Dataset, out: Path) -> None:
 
 def append(path: Path, arrays: Arrays, first: int, last: int) -> None:
     """Write frames first to last (not included) of arrays (n_frames, ...) that hold all frames so far."""
-    with writing(path):
+    with writing(path), zarr_files.opened(path) as group:
         for name, values in arrays.items():
-            about = zarr_files.read_description(path / name)
-            zarr_files.write_array(path / name, about, values, first, last)
+            zarr_files.write_rows(group[name], values, first, last)
 
 
 def set_attributes(path: Path, changed: Mapping[str, Any]) -> None:
     """Change attributes of a result on disk; with how far it has grown, what says how many files hold it."""
-    with writing(path):
-        attrs, described = zarr_files.read_group(path)
-        attrs |= changed
+    with writing(path), zarr_files.opened(path) as group:
+        attrs = {**group.attrs, **changed}
         if "chunks" in attrs and not changed.keys().isdisjoint(ENDS.values()):
-            attrs["chunks"] = _counted(described, attrs)
-        zarr_files.write_group(path, attrs, described)
+            attrs["chunks"] = _counted(group, attrs)
+        zarr_files.set_attributes(group, attrs)
 
 
-def _counted(described: Mapping[str, Any], attrs: Mapping[str, Any]) -> dict[str, int]:
+def _counted(group: zarr.Group, attrs: Mapping[str, Any]) -> dict[str, int]:
     """How many files hold what there is of every array."""
     counts = {}
-    for name, about in sorted(described.items()):
-        shape, upto = about["shape"], grown(about["dimension_names"], attrs)
+    for name, dims, array in zarr_files.arrays_of(group):
+        shape, upto = array.shape, grown(dims, attrs)
         if upto is not None:
-            shape = [min(upto, shape[0]), *shape[1:]]
-        counts[name] = zarr_files.file_count(shape, about["chunk_grid"]["configuration"]["chunk_shape"])
+            shape = (min(upto, shape[0]), *shape[1:])
+        counts[name] = zarr_files.file_count(shape, array.chunks)
     return counts
 
 
@@ -202,18 +196,15 @@ def complete(part: Path, out: Path, sizes: Mapping[str, int], changed: Mapping[s
 
     What is needed to go on goes last: whatever stops this, it can be done once more.
     """
-    with writing(part):
-        attrs, described = zarr_files.read_group(part)
-        for name, about in described.items():
-            size = sizes.get(next(iter(about["dimension_names"]), ""))
-            if size not in (None, about["shape"][0]):
-                about["shape"][0] = size
-                zarr_files.write_description(part / name, about)
+    with writing(part), zarr_files.opened(part, whole=True) as group:
+        for _, dims, array in zarr_files.arrays_of(group):
+            size = sizes.get(next(iter(dims), ""))
+            if size not in (None, array.shape[0]):
+                array.resize((size, *array.shape[1:]))
+        attrs = {**group.attrs, **changed}
         # Earlier versions left out files of zeros, and did not count while a run was growing.
-        counted = "chunks" in attrs
-        attrs |= changed
-        attrs["chunks"] = _counted(described, attrs) if counted else chunk_files(part)
-        zarr_files.write_group(part, attrs, described)
+        counts = _counted(group, attrs) if "chunks" in group.attrs else chunk_files(part)
+        zarr_files.set_attributes(group, {**attrs, "chunks": counts})
     give_name(part, out)
 
 

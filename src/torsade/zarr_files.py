@@ -1,17 +1,16 @@
-"""Arrays in zarr's third format, written: descriptions in JSON, and files that hold so many rows each.
+"""Folders in zarr's third format: zarr writes them in memory, and here what it wrote goes to the disk.
 
-The layout is that of the Zarr core specification, version 3. NAME/zarr.json describes an array, the file
-NAME/c/K/0/0 holds rows n K to n (K + 1) of one with three dimensions, packed, and the CRC-32C of that. The
-zarr.json of the folder has attributes and all descriptions once more, where readers find them together. Zarr
-itself writes the same files, and hands each to another thread, which costs many times what writing does.
+Where zarr writes to a disk itself it hands every file to another thread, which costs several times what
+writing does; and files appear in any order.
 """
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
-from functools import lru_cache
+import warnings
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,17 +21,18 @@ from torsade.errors import TorsadeError, quoted
 
 if TYPE_CHECKING:
     import xarray
+    import zarr
 
 __all__ = [
     "CHUNK_BYTES",
     "NUMBERS",
-    "described",
+    "add",
+    "arrays_of",
+    "chunk_shape",
     "file_count",
-    "read_description",
-    "read_group",
-    "write_array",
-    "write_description",
-    "write_group",
+    "opened",
+    "set_attributes",
+    "write_rows",
 ]
 
 NUMBERS = {
@@ -51,50 +51,96 @@ LEVEL = 2
 
 DESCRIPTION = "zarr.json"
 
-Described = Mapping[str, Any]
+
+@contextmanager
+def opened(path: Path, *, whole: bool = False) -> Iterator[zarr.Group]:
+    """A folder for zarr to change, or a new one; at the end new files go to the disk, each at once.
+
+    Numbers go first, then what describes arrays, and last what describes the folder and is read first.
+
+    Parameters
+    ----------
+    whole : gather the descriptions of arrays anew in that of the folder, as is needed when one has changed
+    """
+    import zarr
+    from zarr.buffer.cpu import Buffer
+    from zarr.storage import MemoryStore
+
+    there = [path / DESCRIPTION, *(path.glob(f"*/{DESCRIPTION}") if whole else ())]
+    before = {
+        file.relative_to(path).as_posix(): Buffer.from_bytes(file.read_bytes())
+        for file in there
+        if file.is_file()
+    }
+    held: dict[str, Any] = dict(before)
+    store = MemoryStore(held)
+    # Every file is written, of zeros too, so that all can be counted.
+    with zarr.config.set({"array.write_empty_chunks": True}), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Consolidated metadata is currently not part")
+        yield zarr.open_group(store, mode="a", zarr_format=3)
+        if whole:
+            zarr.consolidate_metadata(store)
+    for key in sorted(held, key=lambda key: (key.endswith(DESCRIPTION), -key.count("/"))):
+        if held[key] is not before.get(key):
+            _put(path / key, held[key].to_bytes())
 
 
-def described(variable: xarray.Variable, name: str) -> dict[str, Any]:
-    """The description of an array: 64 KiB or a row in a file; what is not written is nan, 0 or false.
+def add(group: zarr.Group, name: str, variable: xarray.Variable, last: int | None) -> None:
+    """Add an array: 64 KiB or a row in a file, with a checksum. Its rows before last are written, or all.
 
     Raises
     ------
     TorsadeError
         When it does not hold numbers, or has a name that no folder can have.
     """
-    kind, shape = variable.dtype.name, [int(n) for n in variable.shape]
+    from zarr.codecs import BloscCodec, Crc32cCodec, ZstdCodec
+
+    kind, values = variable.dtype.name, variable.values
     if kind not in NUMBERS:
         raise TorsadeError(f"{name!r} holds {kind}, and only numbers are stored; leave it out")
     if name != Path(name).name:
         raise TorsadeError(f"a variable is called {quoted(name)}; give it a name that a folder can have")
-    row = NUMBERS[kind] * math.prod(shape[1:])
-    rows = [max(1, min(n, -(-CHUNK_BYTES // max(1, row)))) for n in shape[:1]]
-    packing = (
-        {"typesize": 4, "cname": "zstd", "clevel": LEVEL, "shuffle": "bitshuffle", "blocksize": 0}
-        if kind == "float32"
-        else {"level": 0, "checksum": False}
+    single = values.dtype == np.float32
+    packing = BloscCodec(cname="zstd", clevel=LEVEL, shuffle="bitshuffle") if single else ZstdCodec(level=0)
+    array = group.create_array(
+        name,
+        shape=values.shape,
+        dtype=values.dtype.newbyteorder("<"),
+        chunks=chunk_shape(variable),
+        compressors=[packing, Crc32cCodec()],
+        fill_value=np.nan if values.dtype.kind == "f" else 0,
+        dimension_names=[str(dim) for dim in variable.dims],
+        attributes=dict(variable.attrs),
     )
-    order = {} if NUMBERS[kind] == 1 else {"configuration": {"endian": "little"}}
-    return {
-        "zarr_format": 3,
-        "node_type": "array",
-        "shape": shape,
-        "data_type": kind,
-        "chunk_grid": {
-            "name": "regular",
-            "configuration": {"chunk_shape": [*rows, *(max(1, n) for n in shape[1:])]},
-        },
-        "chunk_key_encoding": {"name": "default", "configuration": {"separator": "/"}},
-        "fill_value": {"b": False, "f": "NaN"}.get(variable.dtype.kind, 0),
-        "codecs": [
-            {"name": "bytes"} | order,
-            {"name": "blosc" if kind == "float32" else "zstd", "configuration": packing},
-            {"name": "crc32c"},
-        ],
-        "attributes": dict(variable.attrs),
-        "dimension_names": [str(dim) for dim in variable.dims],
-        "storage_transformers": [],
-    }
+    if values.ndim == 0:
+        array[...] = values
+    else:
+        write_rows(array, values, 0, len(values) if last is None else last)
+
+
+def chunk_shape(variable: xarray.Variable) -> tuple[int, ...]:
+    """The shape of what one file of a variable holds: whole rows, of `CHUNK_BYTES` or one."""
+    row = variable.dtype.itemsize * math.prod(variable.shape[1:])
+    rows = [max(1, min(n, -(-CHUNK_BYTES // max(1, row)))) for n in variable.shape[:1]]
+    return (*rows, *(max(1, n) for n in variable.shape[1:]))
+
+
+def write_rows(array: Any, values: NDArray[Any], first: int, last: int) -> None:
+    """Write the files that hold rows first to last (not included) of an array, of which these are all values.
+
+    Rows behind last that come into the last of these files are written too: none has to be read back.
+    """
+    rows = array.chunks[0]
+    whole = slice(first // rows * rows, min(-(-last // rows) * rows, len(values)))
+    if values[whole].size:
+        array[whole] = values[whole]
+
+
+def arrays_of(group: zarr.Group) -> Iterator[tuple[str, tuple[str, ...], Any]]:
+    """Name, dimensions and array of all that a folder holds."""
+    for name, array in sorted(group.arrays()):
+        dims = array.metadata.dimension_names  # type: ignore[union-attr]
+        yield name, tuple(str(dim) for dim in dims or ()), array
 
 
 def file_count(shape: Sequence[int], chunk: Sequence[int]) -> int:
@@ -102,76 +148,15 @@ def file_count(shape: Sequence[int], chunk: Sequence[int]) -> int:
     return math.prod(-(-n // k) for n, k in zip(shape, chunk, strict=True))
 
 
-def write_array(
-    folder: Path, about: Described, values: NDArray[Any], first: int = 0, last: int | None = None
-) -> None:
-    """Write the files that hold rows first to last (not included) of an array, each whole and at once.
+def set_attributes(group: zarr.Group, changed: Mapping[str, Any]) -> None:
+    """Change attributes of a folder.
 
-    Rows behind last that come into the last of these files are written too.
-
-    Parameters
-    ----------
-    folder : of the array, in which its description is
-    values : all of the array, of the shape and type described
+    Raises
+    ------
+    TorsadeError
+        When one is neither a number nor text nor made of them.
     """
-    if values.size == 0:
-        return
-    if values.ndim == 0:
-        _put(folder / "c", _packed(about, values))
-        return
-    rows = about["chunk_grid"]["configuration"]["chunk_shape"][0]
-    for k in range(first // rows, -(-(len(values) if last is None else last) // rows)):
-        held = values[k * rows : (k + 1) * rows]
-        if len(held) < rows:
-            beyond = np.full((rows - len(held), *held.shape[1:]), float(about["fill_value"]), held.dtype)
-            held = np.concatenate([held, beyond])
-        file = folder.joinpath("c", str(k), *("0" for _ in values.shape[1:]))
-        file.parent.mkdir(parents=True, exist_ok=True)
-        _put(file, _packed(about, held))
-
-
-def write_group(path: Path, attributes: Mapping[str, Any], arrays: Mapping[str, Described]) -> None:
-    """Write the description of a folder: attributes, and those of its arrays, by name."""
-    _write_json(
-        path,
-        {
-            "attributes": dict(attributes),
-            "zarr_format": 3,
-            "consolidated_metadata": {
-                "kind": "inline",
-                "must_understand": False,
-                "metadata": dict(sorted(arrays.items())),
-            },
-            "node_type": "group",
-        },
-    )
-
-
-def write_description(folder: Path, about: Described) -> None:
-    """Write the description of an array into its folder, which is made when it is missing."""
-    folder.mkdir(exist_ok=True)
-    _write_json(folder, about)
-
-
-def read_group(path: Path) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
-    """Attributes of a folder that a run writes, and the descriptions of its arrays, by name."""
-    attributes: dict[str, Any] = _read_json(path)["attributes"]
-    return attributes, {
-        file.parent.name: read_description(file.parent) for file in sorted(path.glob(f"*/{DESCRIPTION}"))
-    }
-
-
-def read_description(folder: Path) -> dict[str, Any]:
-    """The description of an array in its folder."""
-    return _read_json(folder)
-
-
-def _read_json(folder: Path) -> dict[str, Any]:
-    return dict(json.loads((folder / DESCRIPTION).read_bytes()))
-
-
-def _write_json(folder: Path, about: Described) -> None:
-    _put(folder / DESCRIPTION, json.dumps(about, default=_plain).encode())
+    group.update_attributes(json.loads(json.dumps(dict(changed), default=_plain)))
 
 
 def _plain(value: object) -> object:
@@ -183,6 +168,7 @@ def _plain(value: object) -> object:
 
 def _put(path: Path, content: bytes) -> None:
     """Replace a file at once."""
+    path.parent.mkdir(parents=True, exist_ok=True)
     new = path.with_name(f".{path.name}.new")
     try:
         new.write_bytes(content)
@@ -190,24 +176,3 @@ def _put(path: Path, content: bytes) -> None:
     except BaseException:
         new.unlink(missing_ok=True)
         raise
-
-
-def _packed(about: Described, values: NDArray[Any]) -> bytes:
-    """What a file holds: numbers in little-endian order, packed, and their checksum."""
-    from google_crc32c import value as checksum
-
-    (packing,) = (codec for codec in about["codecs"] if codec["name"] in ("blosc", "zstd"))
-    plain = np.ascontiguousarray(values, values.dtype.newbyteorder("<"))
-    packed = bytes(_packer(packing["name"]).encode(plain))
-    return packed + int(checksum(packed)).to_bytes(4, "little")
-
-
-@lru_cache(maxsize=2)
-def _packer(name: str) -> Any:
-    """Whatever its settings were, what it packed is unpacked by the name alone."""
-    from numcodecs.blosc import BITSHUFFLE, Blosc
-    from numcodecs.zstd import Zstd
-
-    if name == "blosc":
-        return Blosc(cname="zstd", clevel=LEVEL, shuffle=BITSHUFFLE)
-    return Zstd(level=0)

@@ -117,11 +117,11 @@ def test_what_is_called_replaced_is_left_alone(tmp_path: Path) -> None:
 
 
 def test_a_full_disk_leaves_no_rubbish(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def full(folder: Path, *rest: object, **options: object) -> None:
+    def full(path: Path, content: bytes) -> None:
         raise OSError(28, "No space left on device")
 
     result = SPEC.run()
-    monkeypatch.setattr(zarr_files, "write_array", full)
+    monkeypatch.setattr(zarr_files, "_put", full)
     for attempt in (lambda: SPEC.run(out=tmp_path / "reef.zarr"), lambda: result.save(tmp_path / "a.zarr")):
         with pytest.raises(ts.TorsadeError, match="no space left on device"):
             attempt()
