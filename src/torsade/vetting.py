@@ -272,7 +272,7 @@ def _variable(name: str, about: Mapping[str, Any]) -> Stored:
     if about.get("node_type") != "array" or about.get("zarr_format") != 3:
         raise _UnfitError(f"{name!r} is no array of zarr's third format")
     shape = _sizes(about.get("shape"), f"the shape of {name!r}", 0)
-    dims = about.get("dimension_names")
+    dims = about.get("dimension_names", [] if not shape else None)  # zarr leaves them out of a single number
     if not (isinstance(dims, list) and len(dims) == len(shape) and all(isinstance(d, str) for d in dims)):
         raise _UnfitError(f"{name!r} does not name its {len(shape)} dimensions")
     kind = about.get("data_type")
