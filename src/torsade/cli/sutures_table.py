@@ -25,7 +25,8 @@ def _suture(result: Result, report: dict[str, Any]) -> Iterator[tuple[str, str]]
     yield "pull", f"{1e3 * spec['force']:g} mN at each end for {spec['duration']:g} s"
     skin = f"radius {1e3 * model['skin_radius']:g} mm, gap {1e3 * model['gap']:g} mm at rest"
     yield "skin", f"{skin}, stiffness {spec['skin_stiffness']:g} N/m"
-    counts = f"N = {report['crossings']}, Wr = {report['writhe']:+d}"
+    writhe = report["writhe"]
+    counts = f"N = {report['crossings']}, Wr = {f'{writhe:+d}' if writhe else 0}"
     yield "knot", f"{counts}, tau = {report['tau']:.4g}"
     closed = report["closed_at_s"]
     yield (
