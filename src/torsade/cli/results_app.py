@@ -26,7 +26,9 @@ OPEN_EXAMPLES = """Examples:
 
 torsade open reef.zarr
 
-torsade open reef.zarr --frame 10 --picture reef.png"""
+torsade open reef.zarr --frame 10 --picture reef.png
+
+torsade open reef.zarr --plot reef-speed.pdf"""
 
 _JSON = "Print JSON, and nothing else, on the standard output."
 _SALVAGE = "Where files of numbers are lost, take the frames before."
@@ -111,13 +113,17 @@ def _open(
     picture: Annotated[
         str | None, Parameter(help="Draw to this PNG file, in place of opening a window.")
     ] = None,
+    plot: Annotated[
+        str | None,
+        Parameter(help="Plot the history to this file (.png, .pdf or .svg), in place of opening a window."),
+    ] = None,
     json: Annotated[bool, Parameter(help=_JSON)] = False,
     salvage: Annotated[bool, Parameter(help=_SALVAGE)] = False,
 ) -> int:
-    """Show the frames of a result in a window that can be turned, or draw one of them to a file.
+    """Show the frames of a result in a window that can be turned, draw one of them, or plot its history.
 
     Drag to turn, scroll to come nearer; the slider, Left and Right go through the frames; Q closes.
     """
     from torsade.cli.results import show
 
-    return show(given, frame, picture, json, salvage)
+    return show(given, frame, picture, plot, json, salvage)

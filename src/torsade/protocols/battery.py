@@ -142,7 +142,8 @@ class Battery(Driven):
         60,
         ge=1,
         le=1_000_000,
-        description="Frames to record after the one at t = 0, evenly spaced in the logarithm of time.",
+        description="Frames to record after the one at t = 0, evenly spaced in the logarithm of time; fewer "
+        "if it is empty before the longest time.",
     )
 
     @field_validator("knot")
