@@ -15,7 +15,6 @@ from torsade.cli.knots_app import knots_app
 from torsade.cli.messages import shown
 from torsade.cli.movie_app import add_command as add_movie
 from torsade.errors import TorsadeError
-from torsade.units import said
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
@@ -388,6 +387,7 @@ def _option(name: str, kind: type, text: str, group: Group) -> inspect.Parameter
 def _help(spec: type[Spec], name: str) -> str:
     """Description of a field, with an example of its unit and its default."""
     from torsade.protocols.sentences import dimension_of
+    from torsade.units import said
 
     field = spec.model_fields[name]
     dimension = dimension_of(field)
