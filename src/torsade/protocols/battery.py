@@ -276,12 +276,10 @@ class Battery(Driven):
 
         from torsade.protocols.battery_numbers import Units, concluded
         from torsade.protocols.discharge import NAMES, SAMPLED, Discharge, hinge_at, hinge_to_cut
-        from torsade.protocols.driving import preparation
         from torsade.protocols.shapes import check_count, check_frames
 
         check_count(self.node_count)
         check_frames(self.frames + 1, self.node_count + 1)
-        tell(0.0, preparation())
         closed, charge = self.charged(tell)
         a = closed.assembly
         if self.cut_at is None:

@@ -73,16 +73,15 @@ class Still(Spec):
             On Ctrl-C or SIGTERM.
         """
         from torsade import places
-        from torsade.protocols.driving import Interrupted, preparation
+        from torsade.protocols.driving import Interrupted, compilation_told
         from torsade.recording import Recording
 
         if out is not None and not resume:
             places.check_target(out, overwrite)  # before there is something to be lost
         began = time.perf_counter()
         try:
-            if progress is not None:
-                progress(0.0, preparation())
-            found = self.solve()
+            with compilation_told(progress or (lambda share, note: None)):
+                found = self.solve()
         except KeyboardInterrupt:
             raise Interrupted(0.0, 0, None) from None
         a = found.assembly
