@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 __all__ = ["Interrupted", "compilation_told", "drive", "preparation"]
 
+READY = "getting ready"
+"""What is said before the first step."""
+
 SAMPLE_EVERY = 0.01
 """Greatest time between samples [s]."""
 
@@ -47,6 +50,7 @@ def drive(
     try:
         if recording.complete:
             return recording.result()
+        tell(0.0, READY)
         with compilation_told(tell):
             motion.warm_up()
         if recording.saved is not None:
@@ -101,7 +105,7 @@ def _begin(spec: Driven, trial: Trial, out: str | Path | None, resume: bool, ove
 def preparation() -> str:
     """What there is to do before the first step, as far as can be seen from what was kept."""
     kept = _compile.CACHE is not None and any(_compile.CACHE.rglob("*.nbc"))
-    return "getting ready" if kept else _compilation()
+    return READY if kept else _compilation()
 
 
 def compilation_told(tell: Progress) -> AbstractContextManager[None]:
