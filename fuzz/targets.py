@@ -154,7 +154,7 @@ def _results(name: str) -> Reader:
         sound = (whole / name).read_bytes()
         (whole / name).write_bytes(body)
         try:
-            found = Result.open(whole)
+            found = Result.open(whole, salvage=len(body) % 2 == 0)
             str((found, found.spec, found.complete, found.frames, found.c_f, found.last_held))
             found.report()
         finally:

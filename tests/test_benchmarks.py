@@ -63,6 +63,7 @@ SCRIPTS = (
     "block",
     "ensembles",
     "protocols",
+    "storing",
     "cost",
 )
 

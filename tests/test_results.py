@@ -9,7 +9,7 @@ import pytest
 import xarray
 
 import torsade as ts
-from torsade import store
+from torsade import store, zarr_files
 
 FRAMES, NODES = 5, 7
 
@@ -111,7 +111,7 @@ def test_opening_what_is_not_there(tmp_path: Path) -> None:
 
 
 def test_frames_are_appended_in_whole_chunks(tmp_path: Path) -> None:
-    frames = 3 * store.CHUNK_BYTES // 8 + 5  # more than three chunks of a scalar
+    frames = 3 * zarr_files.CHUNK_BYTES // 8 + 5  # more than three chunks of a scalar
     values = np.full(frames, np.nan)
     attrs = {"protocol": "tighten", "spec": "{}", "status": "running", "versions": {}, "done": 0}
     path = tmp_path / "long.zarr.part"

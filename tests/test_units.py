@@ -184,3 +184,18 @@ def test_annotated_types_carry_their_unit(name: str) -> None:
 def test_help_text_can_find_the_unit_of_a_field() -> None:
     metadata = _Spec.model_fields["force"].metadata
     assert [m.unit for m in metadata if isinstance(m, units.Dimension)] == ["N"]
+
+
+@settings(deadline=None)
+@given(st.decimals(0, 1000, places=3), st.integers(1, 200))
+def test_even_values_are_the_floats_that_they_are_when_written_out(last: object, parts: int) -> None:
+    found = units.evenly(0.0, float(str(last)), parts)
+    exact = [Fraction(str(last)) * k / parts for k in range(parts + 1)]
+    assert found == [float(value) for value in exact]
+    assert found[-1] == float(str(last))
+
+
+def test_reported_numbers_are_without_the_roundings_of_sums() -> None:
+    assert units.rounded(sum([0.1] * 8)) == 0.8 != sum([0.1] * 8)
+    assert units.rounded(-1.234567890123e-7) == pytest.approx(-1.234567890123e-7, rel=1e-12)
+    assert units.rounded(0.0) == 0.0

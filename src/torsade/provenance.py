@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import platform
 import subprocess
@@ -14,9 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from torsade import __version__, _compile
-from torsade.errors import TorsadeError
+from torsade.errors import TorsadeError, quoted
 
-__all__ = ["SAME_VERSIONS", "check_same", "cores", "machine", "present", "versions"]
+__all__ = ["ANEW", "SAME_VERSIONS", "check_same", "check_same_run", "cores", "machine", "present", "versions"]
+
+ANEW = "give --overwrite (overwrite=True) in place of resume to begin anew"
 
 LIBRARIES = ("numpy", "scipy", "numba", "llvmlite", "xarray", "zarr")
 
@@ -92,10 +95,7 @@ def check_same(found: Mapping[str, Any], path: Path) -> None:
         When a run with the attributes `found`, stored at `path`, was begun with something else than there is
         now that may round otherwise.
     """
-    advice = (
-        "which may round otherwise; go on with the earlier version, or give --overwrite (overwrite=True) in "
-        "place of resume to begin anew"
-    )
+    advice = f"which may round otherwise; go on with the earlier version, or {ANEW}"
     now, then = versions(), found["versions"]
     for name in SAME_VERSIONS:
         if now[name] != then.get(name):
@@ -108,4 +108,34 @@ def check_same(found: Mapping[str, Any], path: Path) -> None:
         before = found.get("kernels", "unknown")
         raise TorsadeError(
             f"{str(path)!r} was begun with other kernels (sources {before}, and here {kernels}), {advice}"
+        )
+
+
+def check_same_run(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) -> None:
+    """Refuse to go on with the frames of another run.
+
+    Raises
+    ------
+    TorsadeError
+        When what was asked for, meant or begun from, by the attributes of both, differs; the first such thing
+        is named.
+    """
+    mine, theirs = json.loads(asked["spec"]), json.loads(found["spec"])
+    for name in sorted(mine.keys() | theirs.keys()):
+        # A centerline may have been moved; what it says is in the hash of the start.
+        if mine.get(name) != theirs.get(name) and not (name == "centerline" and name in mine.keys() & theirs):
+            raise TorsadeError(
+                f"{str(path)!r} was begun with {name} = {theirs.get(name)!r}, not {mine.get(name)!r}; "
+                f"resume with the same specification, or {ANEW}"
+            )
+    mine, theirs = (json.loads(attrs.get("model", "{}")) for attrs in (asked, found))
+    for name in mine:
+        if mine[name] != theirs.get(name):
+            raise TorsadeError(
+                f"{str(path)!r} was begun when {name} meant {quoted(theirs.get(name), 200)}, and now it "
+                f"means {quoted(mine[name], 200)}; {ANEW}"
+            )
+    if asked["start"] != found.get("start"):
+        raise TorsadeError(
+            f"{str(path)!r} was begun from other node positions; give the same centerline, or {ANEW}"
         )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,26 +13,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from torsade.errors import TorsadeError
-from torsade.store import quiet_zarr
-from torsade.variables import VARIABLES
-from torsade.vetting import Stored, check_files, vetted
+from torsade.variables import ENDS, VARIABLES, grown
+from torsade.vetting import Stored, check_files, sound_rows, vetted
 
 if TYPE_CHECKING:
     import xarray
 
 __all__ = ["read"]
 
-ENDS = {"time": "done", "sample": "sampled"}
-"""Dimensions along which a run grows, and the attributes that say how far it has."""
 
-
-def read(path: Path, at_once: int, in_all: int) -> tuple[xarray.Dataset, bool]:
+def read(path: Path, at_once: int, in_all: int, salvage: bool = False) -> tuple[xarray.Dataset, bool]:
     """The recorded part of a stored result, and whether some of it stays on disk.
 
     Parameters
     ----------
     at_once : largest variable that is read now [bytes]
     in_all : most that is read now [bytes]
+    salvage : where files are lost, read the frames before
 
     Raises
     ------
@@ -42,27 +40,43 @@ def read(path: Path, at_once: int, in_all: int) -> tuple[xarray.Dataset, bool]:
 
     attrs, described = vetted(path)
     counts = attrs.pop("chunks", {})
+    if salvage:
+        _cut(path, attrs, described, counts)
     upto = {dim: attrs[name] for dim, name in ENDS.items() if name in attrs}
     late = _large(described, upto, at_once, in_all)
     for name, about in described.items():
         if name not in late:
-            check_files(path, name, about, counts.get(name))
-    with _sound(path), quiet_zarr():
+            check_files(path, name, about, counts.get(name), grown(about.dims, attrs))
+    with _sound(path), _quiet():
         opened = xarray.open_dataset(
             path, engine="zarr", chunks=None, consolidated=False, decode_times=False, decode_timedelta=False
         )
         order = [name for name in VARIABLES if name in described]
-        whole = {
-            name: _late(path, name, described[name], counts, opened.variables[name])
-            if name in late
-            else opened.variables[name]
-            for name in dict.fromkeys([*order, *described])
-        }
+        whole = {name: opened.variables[name] for name in dict.fromkeys([*order, *described])}
+        for name in late:
+            about, count = described[name], counts.get(name)
+            whole[name] = _late(whole[name], path, name, about, count, grown(about.dims, attrs))
         dataset = xarray.Dataset(whole, attrs=attrs).set_coords(list(opened.coords))
         dataset = dataset.isel({dim: slice(0, n) for dim, n in upto.items() if dim in dataset.dims})
         for at_hand in set(dataset.variables) - late:
             dataset.variables[at_hand].load()
     return dataset, bool(late)
+
+
+def _cut(path: Path, attrs: dict[str, Any], described: dict[str, Stored], counts: dict[str, Any]) -> None:
+    """Change attributes to what there is before the first file that is lost; of that no file is missing."""
+    ends = {name: attrs[name] for name in ENDS.values() if name in attrs}
+    known = []
+    for name, about in described.items():
+        upto = grown(about.dims, attrs)
+        rows = None if upto is None else sound_rows(path, name, about, counts.get(name), upto)
+        if rows is not None:
+            known.append(name)
+            ends[ENDS[about.dims[0]]] = min(ends[ENDS[about.dims[0]]], rows)
+    if ends.get("done"):
+        attrs |= ends
+        for name in known:
+            counts.pop(name, None)
 
 
 def _large(described: dict[str, Stored], upto: dict[str, int], at_once: int, in_all: int) -> set[str]:
@@ -78,6 +92,14 @@ def _large(described: dict[str, Stored], upto: dict[str, int], at_once: int, in_
         if (sizes[name] > at_once or in_all < 0) and name not in described[name].dims:
             late.add(name)
     return late
+
+
+@contextmanager
+def _quiet() -> Iterator[None]:
+    """Leave out what zarr says of other files in the folder."""
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Object at .* is not recognized as a component")
+        yield
 
 
 @contextmanager
@@ -100,9 +122,9 @@ def _sound(path: Path, name: str | None = None) -> Iterator[None]:
 
 
 def _late(
-    path: Path, name: str, about: Stored, counts: dict[str, Any], variable: xarray.Variable
+    variable: xarray.Variable, path: Path, name: str, about: Stored, count: object, upto: int | None
 ) -> xarray.Variable:
-    """A variable that is read, and its files looked at, when it is used."""
+    """A variable that is read, and its files looked at, when it is used; see `check_files`."""
     import xarray
     from xarray.backends import BackendArray
     from xarray.core import indexing
@@ -117,7 +139,7 @@ def _late(
 
         def numbers(self, key: Any) -> NDArray[Any]:
             if not self.looked_at:
-                check_files(path, name, about, counts.get(name))
+                check_files(path, name, about, count, upto)
                 self.looked_at = True
             with _sound(path, name):
                 return np.asarray(variable[key].values)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from torsade import places, provenance, store, vetting
 from torsade.arrays import Floats
-from torsade.errors import TorsadeError, counted, quoted
+from torsade.errors import TorsadeError, counted
 from torsade.results import Result
 from torsade.variables import FORMAT, SAMPLE, SINGLE_PRECISION, VARIABLES
 
@@ -45,7 +45,7 @@ class Recording:
     saved : all that decides how the motion goes on after the last of them, None before the first
     wall : computing time so far [s]
     complete : whether there is nothing left to do
-    part : the growing folder on disk, under a name of its own until it holds a frame, or None
+    part : the growing folder on disk, or None before there is one
     """
 
     def __init__(
@@ -77,7 +77,7 @@ class Recording:
         self._out: Path | None = None
         self._lock: places.Lock | None = None
         self._written = (0, 0)
-        self._flushed = -np.inf
+        self._flushed = time.monotonic()
         self._derive: Callable[[dict[str, Floats]], dict[str, Floats]] = lambda history: {}
 
     @classmethod
@@ -121,7 +121,7 @@ class Recording:
         return recording
 
     def _start(self, part: Path, resume: bool, overwrite: bool) -> None:
-        """Take over the growing folder that is there, or make one under a name of its own."""
+        """Take over the growing folder that is there, or see that a new one may take its place."""
         found = places.attributes(part) or {}
         done = found.get("done", 0)
         if done and resume:
@@ -132,9 +132,6 @@ class Recording:
                 f"{str(part)!r} holds {counted(done, 'frame')} of an interrupted run; add --resume "
                 "(resume=True) to go on or --overwrite (overwrite=True) to begin anew"
             )
-        self.attrs["done"] = self.attrs["sampled"] = 0
-        self.part = places.private(part, "new")
-        store.create(self._dataset(None), self.part)
 
     def _is_complete(self, out: Path) -> bool:
         """Whether the same run stands complete at `out`; its frames are then taken over."""
@@ -142,7 +139,7 @@ class Recording:
         if found is None or found.get("status") != "complete" or places.part_of(out).exists():
             return False
         found, _ = vetting.vetted(out)
-        _same_run(self.attrs, found, out)
+        provenance.check_same_run(self.attrs, found, out)
         self._out, self.complete = out, True
         return True
 
@@ -152,21 +149,25 @@ class Recording:
         missing = [name for name in NEEDED if name not in found]
         if missing:
             raise TorsadeError(f"{str(part)!r} does not say {missing[0]!r}; give --overwrite to begin anew")
-        _same_run(self.attrs, found, part)
+        provenance.check_same_run(self.attrs, found, part)
         provenance.check_same(found, part)
         for name in ("created", "versions", "machine", "resumed"):
             self.attrs[name] = found[name]
         self.part = part
         if found["status"] == "complete":  # only its name is missing
             assert self._out is not None
-            store.complete(part, self._out, {}, {})
+            with _or_anew():
+                Result.open(part)
+            store.give_name(part, self._out)
             self.complete = True
         elif store.has_restart(part):
             self._take_over(part)
+            # The state is written before them, and may be ahead.
+            store.set_attributes(part, self._progress() | {"status": found["status"]})
+            self._read(part)
             again = {"at": _now(), "done": self.done, **provenance.present()}
             self.attrs["resumed"] = [*found["resumed"], again]
-            store.set_attributes(part, self._progress() | {"resumed": self.attrs["resumed"]})
-            self._read(part)
+            store.set_attributes(part, {name: self.attrs[name] for name in ("status", "resumed")})
         elif found["done"] == len(self._arrays["time"]):  # only the end is missing
             self.done, self.sampled = self._written = found["done"], found["sampled"]
             self._steps, self.wall = found["steps"], float(found["wall_s"])
@@ -174,7 +175,7 @@ class Recording:
         else:
             raise TorsadeError(
                 f"{str(part)!r} holds {counted(found['done'], 'frame')}, but no state to go on from; open it "
-                "for the frames, or give --overwrite (overwrite=True) in place of resume to begin anew"
+                f"for the frames, or {provenance.ANEW}"
             )
 
     def _take_over(self, part: Path) -> None:
@@ -196,15 +197,15 @@ class Recording:
             motion.recover(self.saved)
 
     def _read(self, part: Path) -> None:
-        before = Result.open(part).dataset
-        for name, values in self._arrays.items():
-            taken = values[: self._count(name)]
-            if name not in before or before[name].shape != taken.shape:
-                raise TorsadeError(
-                    f"{str(part)!r} does not hold {name!r} as this run records it; it is damaged: give "
-                    "--overwrite (overwrite=True) in place of resume to begin anew"
-                )
-            taken[:] = before[name].values
+        with _or_anew():
+            before = Result.open(part).dataset
+            for name, values in self._arrays.items():
+                taken = values[: self._count(name)]
+                if name not in before or before[name].shape != taken.shape:
+                    raise TorsadeError(
+                        f"{str(part)!r} does not hold {name!r} as this run records it; it is damaged"
+                    )
+                taken[:] = before[name].values
 
     def add(self, frame: Frame) -> None:
         """Record a frame."""
@@ -250,58 +251,79 @@ class Recording:
 
     def flush(self) -> None:
         """Write to disk what is not there yet."""
+        self._complement()
+        if self._out is None or self.saved is None:
+            return
+        if self.part is None:
+            self._begin_folder(None)
+        else:
+            self._append()
+            self._write_restart(self.part)
+            store.set_attributes(self.part, self._progress())
+        self._flushed = time.monotonic()
+
+    def _complement(self) -> None:
+        """Fill in the histories that follow from those recorded."""
         if self.done:
             for name, values in self._derive(self.histories()).items():
                 self._arrays[name][: self.done] = values
-        if self.part is None or self.saved is None:
-            return
+
+    def _begin_folder(self, sizes: Mapping[str, int] | None) -> None:
+        """Write all that there is to a folder, which then takes the place where others look for it.
+
+        With sizes of dimensions nothing is to come any more, otherwise it grows.
+        """
+        assert self._out is not None
+        part = places.part_of(self._out)
+        new = places.private(part, "new")
+        self.attrs.update(self._progress())
+        try:
+            store.create(self._dataset(sizes), new)
+            if sizes is None:
+                self._write_restart(new)
+            places.replace(new, part)
+        except BaseException:
+            shutil.rmtree(new, ignore_errors=True)
+            raise
+        self.part = part
+        self._written = self.done, self.sampled
+
+    def _append(self) -> None:
+        assert self.part is not None
         frames = {name: a for name, a in self._arrays.items() if not name.startswith(SAMPLE)}
         store.append(self.part, frames, self._written[0], self.done)
         samples = {name: a for name, a in self._arrays.items() if name.startswith(SAMPLE)}
         store.append(self.part, samples, self._written[1], self.sampled)
-        progress = {name: np.array(value) for name, value in self._progress().items() if name in PROGRESS}
-        store.write_restart(self.part, self.saved | progress | {"wall": np.array(self.wall)})
-        store.set_attributes(self.part, self._progress())
-        self._settle()
         self._written = self.done, self.sampled
-        self._flushed = time.monotonic()
 
-    def _settle(self) -> None:
-        """With a frame on disk, the folder takes the place where others look for it."""
-        assert self._out is not None
-        part = places.part_of(self._out)
-        if self.part is not None and self.part != part:
-            places.replace(self.part, part)
-            self.part = part
+    def _write_restart(self, folder: Path) -> None:
+        assert self.saved is not None
+        progress = {name: np.array(value) for name, value in self._progress().items() if name in PROGRESS}
+        store.write_restart(folder, self.saved | progress | {"wall": np.array(self.wall)})
 
     def stop(self, status: str) -> None:
         """Save what there is of a run that did not come to its end, and why it did not."""
         self.attrs["status"] = status
-        try:
-            if self.done:
-                self.flush()
-        finally:
-            self._discard()
+        if self.done:
+            self.flush()
 
     def finish(self, numbers: Mapping[str, Any]) -> Result:
         """The result of a run that came to its end, with what belongs to it as a whole."""
-        self.flush()
+        self._complement()
         self.attrs.update({"status": "complete"} | dict(numbers))
         self.attrs.update(self._progress())
-        if self.part is not None and self._out is not None:
-            store.complete(self.part, self._out, self._sizes(), self.attrs)
+        if self._out is not None:
+            if self.part is None:
+                self._begin_folder(self._sizes())
+                store.give_name(places.part_of(self._out), self._out)
+            else:
+                self._append()
+                store.complete(self.part, self._out, self._sizes(), self.attrs)
         self.complete = True
         return self.result()
 
-    def _discard(self) -> None:
-        """Remove a folder that never held a frame."""
-        if self.part is not None and self._out is not None and self.part != places.part_of(self._out):
-            shutil.rmtree(self.part, ignore_errors=True)
-            self.part = None
-
     def close(self) -> None:
         """Let other processes write to the same place."""
-        self._discard()
         if self._lock is not None:
             self._lock.release()
 
@@ -345,32 +367,13 @@ def _about(name: str) -> dict[str, str]:
     return {"units": unit, "long_name": meaning}
 
 
-def _same_run(asked: Mapping[str, Any], found: Mapping[str, Any], path: Path) -> None:
-    """Refuse to go on with the frames of another run, naming the first thing that differs."""
-    anew = "give --overwrite (overwrite=True) in place of resume to begin anew"
-    mine, theirs = json.loads(asked["spec"]), json.loads(found["spec"])
-    for name in sorted(mine.keys() | theirs.keys()):
-        # A centerline may have been moved; what it says is in the hash of the start.
-        if mine.get(name) != theirs.get(name) and not (name == "centerline" and name in mine.keys() & theirs):
-            raise TorsadeError(
-                f"{str(path)!r} was begun with {name} = {theirs.get(name)!r}, not {mine.get(name)!r}; "
-                f"resume with the same specification, or {anew}"
-            )
-    mine, theirs = (json.loads(attrs.get("model", "{}")) for attrs in (asked, found))
-    for name in mine:
-        if mine[name] != theirs.get(name):
-            raise TorsadeError(
-                f"{str(path)!r} was begun when {name} meant {_brief(theirs.get(name))}, and now it means "
-                f"{_brief(mine[name])}; {anew}"
-            )
-    if asked["start"] != found.get("start"):
-        raise TorsadeError(
-            f"{str(path)!r} was begun from other node positions; give the same centerline, or {anew}"
-        )
-
-
-def _brief(value: object) -> str:
-    return quoted(value, 200)
+@contextmanager
+def _or_anew() -> Iterator[None]:
+    """Say of what is damaged what can be done in place of going on with it."""
+    try:
+        yield
+    except TorsadeError as error:
+        raise TorsadeError(f"{error}; {provenance.ANEW}") from None
 
 
 def _now() -> str:

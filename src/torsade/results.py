@@ -52,10 +52,11 @@ class Result:
         self._behind: Path | None = None
 
     @classmethod
-    def open(cls, path: str | Path) -> Result:
+    def open(cls, path: str | Path, *, salvage: bool = False) -> Result:
         """Read a result from NAME.zarr, or what is done of one from NAME.zarr.part.
 
-        Variables of more than `READ_AT_ONCE` bytes stay on disk until they are used.
+        Variables of more than `READ_AT_ONCE` bytes stay on disk until they are used. With salvage, where
+        files of numbers are lost, the frames before are read.
 
         Raises
         ------
@@ -71,7 +72,7 @@ class Result:
                     f"{str(path)!r} is not complete; open {str(part)!r} for what is done of it"
                 )
             raise TorsadeError(f"{str(path)!r} {_what_else(path)}; give a folder NAME.zarr written by a run")
-        dataset, late = reading.read(path, READ_AT_ONCE, READ_IN_ALL)
+        dataset, late = reading.read(path, READ_AT_ONCE, READ_IN_ALL, salvage)
         result = cls(dataset)
         result._behind = path if late else None
         return result
@@ -165,9 +166,7 @@ class Result:
                     f"{str(part)!r} holds {counted(done, 'frame')} of an interrupted run; finish it or give "
                     "another name"
                 )
-            new = places.private(out, "new")
-            store.save(self.dataset, new)
-            places.replace(new, out)
+            store.save(self.dataset, out)
         finally:
             lock.release()
         return out
@@ -214,6 +213,6 @@ def _above(module: str) -> Any:
     return import_module(module)
 
 
-def open_result(path: str | Path) -> Result:
+def open_result(path: str | Path, *, salvage: bool = False) -> Result:
     """Read a result; see `Result.open`."""
-    return Result.open(path)
+    return Result.open(path, salvage=salvage)

@@ -8,17 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-__all__ = [
-    "STOPPING",
-    "Late",
-    "Patience",
-    "by_sigterm",
-    "exit_code",
-    "heard",
-    "ours",
-    "sigterm_stops",
-    "stop",
-]
+__all__ = ["STOPPING", "Late", "Patience", "exit_code", "leave", "sigterm_stops"]
 
 STOPPING = "stopping ... (Ctrl-C again to stop at once)"
 """What is said when the first of them was heard."""
@@ -26,7 +16,7 @@ STOPPING = "stopping ... (Ctrl-C again to stop at once)"
 _last = signal.SIGINT
 
 
-def heard(number: int) -> None:
+def _heard(number: int) -> None:
     """Remember which signal stops this process."""
     global _last
     _last = signal.Signals(number)
@@ -37,20 +27,20 @@ def exit_code() -> int:
     return 128 + _last
 
 
-def by_sigterm() -> bool:
-    """Whether it was SIGTERM that stopped this process."""
-    return _last == signal.SIGTERM
-
-
-def stop(number: int, frame: object) -> None:
+def _stop(number: int, frame: object) -> None:
     """Handle a signal as Ctrl-C is handled."""
-    heard(number)
+    _heard(number)
     raise KeyboardInterrupt
 
 
-def ours(number: int) -> bool:
+def leave(number: int, frame: object) -> None:
+    """Handle SIGTERM in a process that others give runs to: it ends, once a run has saved what there is."""
+    raise SystemExit(128 + number)
+
+
+def _ours(number: int) -> bool:
     """Whether nobody else handles this signal, so that a run may take it to stop between two steps."""
-    plain = (signal.SIG_DFL, stop) if number == signal.SIGTERM else (signal.default_int_handler,)
+    plain = (signal.SIG_DFL, _stop, leave) if number == signal.SIGTERM else (signal.default_int_handler,)
     return signal.getsignal(number) in plain
 
 
@@ -61,7 +51,7 @@ def sigterm_stops() -> Iterator[None]:
     if not in_main or signal.getsignal(signal.SIGTERM) is not signal.SIG_DFL:
         yield
         return
-    signal.signal(signal.SIGTERM, stop)
+    signal.signal(signal.SIGTERM, _stop)
     try:
         yield
     finally:
@@ -88,7 +78,7 @@ class Patience:
     def __enter__(self) -> Patience:
         if threading.current_thread() is threading.main_thread():
             for number in (signal.SIGINT, signal.SIGTERM):
-                if ours(number):
+                if _ours(number):
                     self._before[number] = signal.signal(number, self._note)
         return self
 
@@ -99,7 +89,7 @@ class Patience:
             raise Late
 
     def _note(self, number: int, frame: object) -> None:
-        heard(number)
+        _heard(number)
         self.end()
         self._asked = True
         self._told()

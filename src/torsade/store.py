@@ -1,8 +1,9 @@
 """Results on disk: zarr folders that grow as a run goes on and are renamed when it is complete.
 
-NAME.zarr.part holds what is done so far: arrays of the full number of frames, nan beyond the attribute
-`done`, and restart.npz, the exact state to go on from. Every write replaces a file at once, and `done`
-is written last, so whatever stops the program, the frames it counts can be read.
+NAME.zarr.part holds what is done so far: arrays of the full number of frames, of which those are written
+that the attribute `done` counts, and restart.npz, the exact state to go on from. Every write replaces a file
+at once, and `done` is written last, so whatever stops the program, the frames it counts can be read. With it
+`chunks` says in how many files they lie, so that one that is lost is noticed.
 """
 
 from __future__ import annotations
@@ -10,7 +11,6 @@ from __future__ import annotations
 import os
 import shutil
 import stat
-import warnings
 import zipfile
 import zlib
 from collections.abc import Iterable, Iterator, Mapping
@@ -21,11 +21,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from torsade import zarr_files
 from torsade.errors import TorsadeError
-from torsade.places import replace, writing
+from torsade.places import private, replace, writing
+from torsade.variables import ENDS, grown
 
 if TYPE_CHECKING:
     import xarray
+    import zarr
 
 __all__ = [
     "append",
@@ -34,8 +37,8 @@ __all__ = [
     "chunks_of",
     "complete",
     "create",
+    "give_name",
     "has_restart",
-    "quiet_zarr",
     "read_restart",
     "save",
     "set_attributes",
@@ -49,67 +52,68 @@ DAMAGE = (OSError, ValueError, EOFError, KeyError, MemoryError, zipfile.BadZipFi
 """What reading a restart file that is damaged may raise."""
 
 RESTART = "restart.npz"
-CHUNK_BYTES = 2**16
-"""Size of a chunk [bytes], rounded up to whole frames."""
 
 
 def create(dataset: xarray.Dataset, path: Path) -> None:
     """Write a dataset as a new folder in zarr's third format; nothing is left when that fails.
 
-    Every file of numbers ends with a checksum, so that one that is damaged is noticed.
-    """
-    from zarr.codecs import BloscCodec, Crc32cCodec, ZstdCodec
+    Of what grows, those rows are written that its attributes `done` and `sampled` count. Every file of
+    numbers ends with a checksum, so that one that is damaged is noticed.
 
-    encoding: dict[str, dict[str, Any]] = {}
-    for name, variable in dataset.variables.items():
-        single = variable.dtype == np.float32
-        packing = BloscCodec(cname="zstd", clevel=5, shuffle="bitshuffle") if single else ZstdCodec(level=0)
-        encoding[str(name)] = {"compressors": [packing, Crc32cCodec()]}
-        if variable.dims[:1] in (("time",), ("sample",)):
-            frame = max(1, variable.dtype.itemsize * int(np.prod(variable.shape[1:])))
-            rows = max(1, min(variable.shape[0], -(-CHUNK_BYTES // frame)))
-            encoding[str(name)]["chunks"] = (rows, *variable.shape[1:])
-    with writing(path), quiet_zarr():
+    Raises
+    ------
+    TorsadeError
+        When it cannot be written, or a variable does not hold numbers.
+    """
+    with writing(path):
+        path.mkdir()
         try:
-            dataset.drop_encoding().to_zarr(
-                path, mode="w-", zarr_format=3, consolidated=True, encoding=encoding
-            )
+            with zarr_files.opened(path, whole=True) as group:
+                for name, variable in dataset.variables.items():
+                    upto = grown([str(dim) for dim in variable.dims], dataset.attrs)
+                    zarr_files.add(group, str(name), variable, upto)
+                zarr_files.set_attributes(group, dataset.attrs | {"chunks": _counted(group, dataset.attrs)})
         except BaseException:
             shutil.rmtree(path, ignore_errors=True)
             raise
 
 
-def save(dataset: xarray.Dataset, path: Path) -> None:
-    """Write a dataset that does not grow any more as a new folder; nothing is left when that fails."""
-    create(dataset, path)
+def save(dataset: xarray.Dataset, out: Path) -> None:
+    """Write a dataset that does not grow any more, in place of what was there; that stays when this fails."""
+    new = private(out, "new")
+    create(dataset, new)
     try:
-        _seal(path, {})
+        replace(new, out)
     except BaseException:
-        shutil.rmtree(path, ignore_errors=True)
+        shutil.rmtree(new, ignore_errors=True)
         raise
 
 
 def append(path: Path, arrays: Arrays, first: int, last: int) -> None:
     """Write frames first to last (not included) of arrays (n_frames, ...) that hold all frames so far."""
-    import zarr
-
-    with writing(path), quiet_zarr():
-        group = zarr.open_group(path, mode="r+")
+    with writing(path), zarr_files.opened(path) as group:
         for name, values in arrays.items():
-            array = group[name]
-            assert isinstance(array, zarr.Array)
-            rows = array.chunks[0]
-            # Whole chunks, so that none has to be read back.
-            whole = slice(first // rows * rows, min(-(-last // rows) * rows, len(values)))
-            array[whole] = values[whole]
+            zarr_files.write_rows(group[name], values, first, last)
 
 
 def set_attributes(path: Path, changed: Mapping[str, Any]) -> None:
-    """Change attributes of a result on disk."""
-    import zarr
+    """Change attributes of a result on disk; with how far it has grown, what says how many files hold it."""
+    with writing(path), zarr_files.opened(path) as group:
+        attrs = {**group.attrs, **changed}
+        if "chunks" in attrs and not changed.keys().isdisjoint(ENDS.values()):
+            attrs["chunks"] = _counted(group, attrs)
+        zarr_files.set_attributes(group, attrs)
 
-    with writing(path), quiet_zarr():
-        zarr.open_group(path, mode="r+").update_attributes(dict(changed))
+
+def _counted(group: zarr.Group, attrs: Mapping[str, Any]) -> dict[str, int]:
+    """How many files hold what there is of every array."""
+    counts = {}
+    for name, dims, array in zarr_files.arrays_of(group):
+        shape, upto = array.shape, grown(dims, attrs)
+        if upto is not None:
+            shape = (min(upto, shape[0]), *shape[1:])
+        counts[name] = zarr_files.file_count(shape, array.chunks)
+    return counts
 
 
 def write_restart(part: Path, arrays: Arrays) -> None:
@@ -172,7 +176,7 @@ def _restart(part: Path, wanted: Iterable[str] | None) -> dict[str, NDArray[Any]
 def chunk_files(path: Path) -> dict[str, int]:
     """How many files hold the numbers of every variable of a result on disk.
 
-    Chunks of zeros, or of nothing but nan, have none: whoever reads cannot tell one that was lost.
+    Earlier versions left out those of zeros, or of nothing but nan.
     """
     arrays = (found.parent for found in sorted(path.glob("*/zarr.json")))
     return {array.name: sum(1 for _ in chunks_of(array)) for array in arrays}
@@ -187,39 +191,25 @@ def chunks_of(array: Path) -> Iterator[Path]:
         yield from (Path(folder, name) for name in names if name.isdigit())
 
 
-def _seal(path: Path, changed: Mapping[str, Any]) -> None:
-    """Give a result its last attributes, with the number of its files, and gather what describes it."""
-    import zarr
-
-    with writing(path), quiet_zarr():
-        group = zarr.open_group(path, mode="r+")
-        group.update_attributes(dict(changed) | {"chunks": chunk_files(path)})
-        zarr.consolidate_metadata(str(path))
-
-
 def complete(part: Path, out: Path, sizes: Mapping[str, int], changed: Mapping[str, Any]) -> None:
     """Cut a grown result to the sizes of its dimensions, give it its last attributes and its name.
 
     What is needed to go on goes last: whatever stops this, it can be done once more.
     """
-    import zarr
-
-    with writing(part), quiet_zarr():
-        group = zarr.open_group(part, mode="r+")
-        for _, array in group.arrays():
-            names = array.metadata.dimension_names  # type: ignore[union-attr]
-            size = sizes.get(str(names[0])) if names else None
+    with writing(part), zarr_files.opened(part, whole=True) as group:
+        for _, dims, array in zarr_files.arrays_of(group):
+            size = sizes.get(next(iter(dims), ""))
             if size not in (None, array.shape[0]):
                 array.resize((size, *array.shape[1:]))
-        _seal(part, changed)
+        attrs = {**group.attrs, **changed}
+        # Earlier versions left out files of zeros, and did not count while a run was growing.
+        counts = _counted(group, attrs) if "chunks" in group.attrs else chunk_files(part)
+        zarr_files.set_attributes(group, {**attrs, "chunks": counts})
+    give_name(part, out)
+
+
+def give_name(part: Path, out: Path) -> None:
+    """Give a grown result that is complete its name."""
+    with writing(part):
         replace(part, out)
         (out / RESTART).unlink(missing_ok=True)
-
-
-@contextmanager
-def quiet_zarr() -> Iterator[None]:
-    """Leave out that consolidated metadata is not in the standard yet; readers that lack it do without."""
-    with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message="Consolidated metadata is currently not part")
-        warnings.filterwarnings("ignore", message="Object at .* is not recognized as a component")
-        yield

@@ -44,11 +44,14 @@ __all__ = [
     "Viscosity",
     "Whole",
     "bearable",
+    "evenly",
     "exact",
     "indefinite",
     "is_bearable",
     "metres",
     "quantity",
+    "rounded",
+    "said",
 ]
 
 Exponents = tuple[int, int, int, int]
@@ -193,6 +196,36 @@ def exact(value: str | float, dimension: str) -> Fraction:
     """
     rounded = quantity(value, dimension)
     return Fraction(_read(value, dimension) if isinstance(value, str) else repr(rounded))
+
+
+def evenly(first: float, last: float, parts: int) -> list[float]:
+    """First, last, and what divides the way between them evenly, each rounded once.
+
+    Values are the floats that they are when written out, where adding steps up leaves roundings.
+
+    >>> evenly(0.0, 2.0, 100)[35], 35 * (2.0 / 100)
+    (0.7, 0.7000000000000001)
+    """
+    begin, end = (Fraction(repr(float(x))) for x in (first, last))
+    common = begin.denominator * end.denominator
+    a, b = int(begin * common), int(end * common)
+    return [(a * (parts - k) + b * k) / (common * parts) for k in range(parts + 1)]
+
+
+def rounded(value: float) -> float:
+    """A reported number to 12 digits: without the roundings of the sums and differences it comes from."""
+    return float(f"{value:.12g}")
+
+
+def said(value: float, dimension: Dimension) -> str:
+    """A value in SI units as people write it, with its unit; angles are in degrees.
+
+    >>> said(0.5235987755982988, DIMENSIONS["angle"])
+    '30 deg'
+    """
+    if dimension.name == "angle":
+        return f"{math.degrees(value):g} deg"
+    return f"{value:g} {dimension.unit}".strip()
 
 
 def _read(value: str | float, dimension: str) -> Fraction | float:

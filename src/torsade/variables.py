@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
-__all__ = ["BYTES_PER_NODE", "FORMAT", "SAMPLE", "SINGLE_PRECISION", "VARIABLES"]
+__all__ = ["BYTES_PER_NODE", "ENDS", "FORMAT", "SAMPLE", "SINGLE_PRECISION", "VARIABLES", "grown"]
 
 FORMAT = 1
 """Of results, counted up whenever a reader of an earlier one would misunderstand it."""
+
+ENDS = {"time": "done", "sample": "sampled"}
+"""Dimensions along which a run grows, and the attributes that say how far it has."""
 
 _CHARGE = "charge"
 """Dimension of what is recorded before t = 0, when a battery is charged."""
@@ -124,3 +128,9 @@ BYTES_PER_NODE = sum(
 
 SAMPLE = "sample_"
 """Beginning of the names of samples."""
+
+
+def grown(dims: Sequence[str], attributes: Mapping[str, Any]) -> int | None:
+    """How many rows there are of what has these dimensions; None where it does not grow."""
+    count: int | None = attributes.get(ENDS.get(dims[0], "")) if dims else None
+    return count

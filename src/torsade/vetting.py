@@ -10,17 +10,19 @@ import json
 import math
 import os
 import stat
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from torsade.errors import TorsadeError, quoted, reason_of
+from torsade.errors import TorsadeError, counted, quoted, reason_of
 from torsade.places import LARGEST_DESCRIPTION, attributes
 from torsade.store import chunks_of
 from torsade.variables import FORMAT
+from torsade.zarr_files import NUMBERS, file_count
 
-__all__ = ["Stored", "check_files", "vetted"]
+__all__ = ["Stored", "check_files", "sound_rows", "vetted"]
 
 LARGEST_VARIABLE = 8_000_000_000
 """Largest variable [bytes]: a run holds no more than half of it in memory."""
@@ -29,14 +31,6 @@ LARGEST_CHUNK = 64 * 2**20
 """Most that one file of numbers may unpack to [bytes]; those of a run are one frame or 64 KiB."""
 
 MOST_VARIABLES = 500
-
-NUMBERS = {
-    "bool": 1,
-    **{f"{kind}{8 * size}": size for kind in ("int", "uint") for size in (1, 2, 4, 8)},
-    "float32": 4,
-    "float64": 8,
-}
-"""Types of numbers that are read, and their size [bytes]."""
 
 PACKINGS = ("blosc", "zstd")
 CHECKSUM = "crc32c"
@@ -65,6 +59,9 @@ KINDS: Mapping[str, tuple[type, ...]] = {
 }
 """Of attributes that a result may have."""
 
+BEFORE = " (info, export and open take the frames before with --salvage, ts.open with salvage=True)"
+"""What can be done about files that are lost."""
+
 NEEDED = ("protocol", "spec", "status")
 """Attributes without which nobody knows what it is."""
 
@@ -76,15 +73,20 @@ class Stored(NamedTuple):
     ----------
     dims, shape : names and sizes of its dimensions
     itemsize : of one number [bytes]
-    chunk_bytes : what one file of it unpacks to [bytes]
+    chunk : the shape of what one file of it holds
     packing : how it is packed, one of `PACKINGS`, or None
     """
 
     dims: tuple[str, ...]
     shape: tuple[int, ...]
     itemsize: int
-    chunk_bytes: int
+    chunk: tuple[int, ...]
     packing: str | None
+
+    @property
+    def chunk_bytes(self) -> int:
+        """What one file of it unpacks to [bytes]."""
+        return self.itemsize * math.prod(self.chunk)
 
 
 class _UnfitError(Exception):
@@ -126,12 +128,14 @@ def vetted(path: Path) -> tuple[dict[str, Any], dict[str, Stored]]:
     return found, stored
 
 
-def check_files(path: Path, name: str, about: Stored, count: object = None) -> None:
+def check_files(path: Path, name: str, about: Stored, count: object = None, upto: int | None = None) -> None:
     """Look at every file of numbers of a variable.
 
     Parameters
     ----------
-    count : how many there should be, or None where that is not known
+    count : how many should hold the rows that there are, or None where that is not known
+    upto : how many rows there are, or None when it does not grow: files behind them were being written when
+        the program ended, and count for nothing
 
     Raises
     ------
@@ -139,15 +143,43 @@ def check_files(path: Path, name: str, about: Stored, count: object = None) -> N
         When one is not a file within the folder, may unpack to more than belongs there, or is not there.
     """
     with _told(path):
-        root, number = path.resolve(), 0
+        root = path.resolve()
         _check_folders(path / name, root)
         for file in chunks_of(path / name):
             _check_regular(file, root, 2 * about.chunk_bytes + 2**16)
             if about.packing is not None and _unpacked(file, about.packing) != about.chunk_bytes:
                 raise _UnfitError(f"{str(file.relative_to(path))!r} does not unpack to what belongs there")
-            number += 1
+        number = sum(_pieces(path / name, about, upto).values())
         if count is not None and count != number:
-            raise _UnfitError(f"{name!r} lies in {number} files and should lie in {quoted(count)}")
+            sound = None if upto is None else sound_rows(path, name, about, count, upto)
+            rest = "" if sound is None or (sound == 0 and about.dims[0] == "time") else BEFORE
+            lies = f"{name!r} lies in {counted(number, 'file')} and should lie in {quoted(count)}"
+            raise _UnfitError(f"{lies}{rest}")
+
+
+def sound_rows(path: Path, name: str, about: Stored, count: object, upto: int) -> int | None:
+    """How many rows of a variable come before the first file that is lost; None where nobody can tell.
+
+    Parameters
+    ----------
+    count, upto : as `check_files` takes them
+    """
+    held = _pieces(path / name, about, upto)
+    if count is None or count == sum(held.values()):
+        return upto
+    of_each = file_count(about.shape[1:], about.chunk[1:])
+    pieces = -(-upto // about.chunk[0])
+    if count != pieces * of_each:  # earlier versions left out files of zeros
+        return None
+    return about.chunk[0] * next((k for k in range(pieces) if held[k] < of_each), pieces)
+
+
+def _pieces(array: Path, about: Stored, upto: int | None) -> Counter[int]:
+    """How many files there are of each piece along the first dimension that holds some of so many rows."""
+    under = len(array.parts) + 1
+    held = Counter(file.parts[under] if about.dims else "0" for file in chunks_of(array))
+    places = {int(k): n for k, n in held.items() if k.isdecimal()}
+    return Counter({k: n for k, n in places.items() if upto is None or k * about.chunk[0] < upto})
 
 
 @contextmanager
@@ -240,7 +272,7 @@ def _variable(name: str, about: Mapping[str, Any]) -> Stored:
     if about.get("node_type") != "array" or about.get("zarr_format") != 3:
         raise _UnfitError(f"{name!r} is no array of zarr's third format")
     shape = _sizes(about.get("shape"), f"the shape of {name!r}", 0)
-    dims = about.get("dimension_names")
+    dims = about.get("dimension_names", [] if not shape else None)  # zarr leaves them out of a single number
     if not (isinstance(dims, list) and len(dims) == len(shape) and all(isinstance(d, str) for d in dims)):
         raise _UnfitError(f"{name!r} does not name its {len(shape)} dimensions")
     kind = about.get("data_type")
@@ -264,7 +296,7 @@ def _variable(name: str, about: Mapping[str, Any]) -> Stored:
     named = {"name": "default", "configuration": {"separator": "/"}}
     if key != named or about.get("storage_transformers"):
         raise _UnfitError(f"the files of {name!r} are named {quoted(key)}")
-    return Stored(tuple(dims), shape, NUMBERS[kind], chunk_bytes, _packing(name, about.get("codecs")))
+    return Stored(tuple(dims), shape, NUMBERS[kind], chunk, _packing(name, about.get("codecs")))
 
 
 def _packing(name: str, codecs: object) -> str | None:

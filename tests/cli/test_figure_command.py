@@ -144,3 +144,8 @@ def test_ctrl_c_keeps_the_runs(tmp_path: Path, workers: str) -> None:
         last,
     )
     assert not list(tmp_path.glob("*.lock")) + list(tmp_path.glob("runs/*.lock"))
+
+
+@pytest.mark.parametrize("written", ["5-3", "5.3", "5_3", "fig5-3", "Fig. 5.3", "figure 5-3"])
+def test_the_number_of_a_figure_may_be_written_as_in_books(written: str) -> None:
+    assert figure(written).number == "5-3"

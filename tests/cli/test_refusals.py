@@ -36,6 +36,7 @@ def refusal(*arguments: str, cwd: Path | None = None) -> str:
 
 BEND = ("run", "prison-escape")
 SUTURE = ("run", "suture")
+BATTERY = ("run", "battery", "--knot")
 MOVE = ("run", "reidemeister", "--move")
 ARCH = ("run", "bend-twist")
 
@@ -47,7 +48,7 @@ ARCH = ("run", "bend-twist")
         ((*BEND, "--knot", "reef", "--force", "15 kg"), "is a mass, not a force"),
         ((*BEND, "--knot", "reef", "--duration", "1 sek"), "unknown unit 'sek'"),
         ((*BEND, "--knot", "reef", "--force", "nan"), "not a finite number"),
-        ((*BEND, "--knot", "reef", "--force", "15", "N"), "quote values with units"),
+        ((*BEND, "--knot", "reef", "--force", "15", "N"), 'did you mean --force "15 N"?'),
         ((*BEND, "--knot", "reef", "--preset", "publishd"), "did you mean 'published'?"),
         ((*BEND, "reef"), "did you mean --knot reef?"),
         ((*SUTURE, "5,-3"), "did you mean --throws '5,-3'?"),
@@ -55,6 +56,17 @@ ARCH = ("run", "bend-twist")
         ((*SUTURE, "--throws", "3,,"), "is not two numbers"),
         ((*SUTURE, "--throws", "2.5"), "is not two numbers"),
         ((*SUTURE, "--throws", "99,99"), "give 15 at most"),
+        ((*SUTURE, "--throws", "5", "-3"), "did you mean --throws 5,-3?"),
+        ((*SUTURE, "--throws", "5,", "-3"), "did you mean --throws 5,-3?"),
+        ((*SUTURE, "--throws", "5 -3"), "give half turns such as 5,-3, with a comma"),
+        ((*SUTURE, "--throws", "5,-3", "--angle", "30"), "at most 1.571 rad (90 deg)"),
+        ((*BATTERY, "31"), "nothing is called '31'; did you mean '3_1'?"),
+        ((*BATTERY, "5.2"), "did you mean '5_2'?"),
+        ((*BATTERY, "5_2m"), "did you mean 'm5_2'?"),
+        ((*BATTERY, "4 6 2"), "is a list of numbers; say which code it is"),
+        ((*BATTERY, "K11n34"), "known are the prime knots through 10 crossings"),
+        ((*BATTERY, "3_1", "--radius", "2", "mm"), 'did you mean --radius "2 mm"?'),
+        ((*BATTERY, "3_1", "--radius", "2", "3"), "'3' belongs to no option"),
         ((*SUTURE,), "throws is missing; give a pair of odd numbers"),
         ((*SUTURE, "--throws", "3,-3", "--skin-stiffness", "-3 N/m"), "give a stiffness above 0 N/m"),
         ((*SUTURE, "--throws", "3,-3", "--out", "no/such/wound.zarr"), "there is no folder"),
@@ -107,6 +119,8 @@ ARCH = ("run", "bend-twist")
         (("run", "tighten", "--knot", "overhand", "--until-still", "1 um"), "is a length, not a velocity"),
         (("tighten",), "give torsade run tighten"),
         (("dmeo",), "did you mean 'demo'?"),
+        (("plot", "reef.zarr"), "did you mean 'open'?"),
+        ((*SUTURE, "--throws", "5,-3", "--skin", "soft"), "--skin-radius or --skin-stiffness or"),
         (("--hlep",), "did you mean '--help'?"),
         (("demo", "--force", "3"), "demo has no option --force"),
     ],

@@ -244,6 +244,21 @@ def test_a_picture_in_place_of_a_window(
     assert 0.005 < (image.min(axis=2) < 0.7).mean() < 0.6
 
 
+@pytest.mark.parametrize("protocol", PROTOCOLS)
+def test_the_history_of_every_stored_result_is_plotted(
+    protocol: str, stored: Callable[[str], Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("matplotlib")
+    code, out, err = inside(capsys, "open", stored(protocol), "--plot", tmp_path / "a.svg", "--json")
+    assert (code, err) == (0, "")
+    assert json.loads(out) == {
+        "result": str(stored(protocol)),
+        "picture": None,
+        "plot": str(tmp_path / "a.svg"),
+    }
+    assert (tmp_path / "a.svg").read_text().count("<path") > 20
+
+
 def test_the_picture_of_a_rod_that_was_interrupted(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

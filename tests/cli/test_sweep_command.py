@@ -65,7 +65,7 @@ def test_a_sweep_is_told_before_it_is_run(bent: Path) -> None:
     told = shell("sweep", "more.toml", "--dry-run", cwd=bent)
     assert told.returncode == 0
     assert "points                    16" in told.stdout
-    assert "end_distance = 0.1 m, twist = 1.5708 rad" in told.stdout
+    assert "end_distance = 0.1 m, twist = 90 deg" in told.stdout
     found = json.loads(shell("sweep", "more.toml", "--dry-run", "--json", cwd=bent).stdout)
     assert (found["points"], len(found["first"])) == (16, 5)
     assert not (bent / "more").exists()

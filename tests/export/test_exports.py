@@ -16,6 +16,7 @@ from torsade.export import FORMATS, export
 from torsade.export.frames import chosen
 from torsade.protocols import PROTOCOLS
 from torsade.view.colours import linear_rgb, strain_colour
+from torsade.view.skin import skin_meshes
 from torsade.view.strands import Strand, strands_at
 
 SHAPED = [name for name in PROTOCOLS if PROTOCOLS[name].pictured]
@@ -39,7 +40,8 @@ def test_a_vtk_series_is_read_by_vtk(
     np.testing.assert_array_equal(reader.time_values, data["time"])
     for frame in {0, result.frames // 2, result.frames - 1}:
         reader.set_active_time_point(frame)
-        (mesh,) = reader.read()
+        mesh, *skin = reader.read()
+        assert len(skin) == ("skin_position" in data)
         strands = strands_at(data, frame)
         assert mesh.n_cells == mesh.n_lines == len(strands)
         np.testing.assert_array_equal(mesh.points, np.concatenate([s.x for s in strands]))
@@ -73,6 +75,49 @@ def test_a_broken_rod_is_exported_in_its_pieces(opened: Callable[[str], ts.Resul
     assert all(line["position_x_m"] for line in lines)
     _, content, _ = glb(result.export("gltf", tmp_path / "run.glb", -1)[0])
     assert len(content["meshes"]) == counts[-1]
+
+
+def test_skin_moves_in_a_vtk_series(opened: Callable[[str], ts.Result], tmp_path: Path) -> None:
+    """Round around the recorded axes, one radius away; faces look out, each side by its number."""
+    pyvista = pytest.importorskip("pyvista")
+    result = opened("suture")
+    files = result.export("vtk", tmp_path / "run.pvd")
+    assert len(files) == 1 + 2 * result.frames
+    reader, axes = pyvista.PVDReader(str(files[0])), result.dataset["skin_position"].values
+    radius = json.loads(result.dataset.attrs["model"])["skin_radius"]
+    assert np.ptp(axes, axis=0).max() > 1e-3 * radius
+    for frame in (0, result.frames - 1):
+        reader.set_active_time_point(frame)
+        _, skin = reader.read()
+        for side, axis in enumerate(axes[frame]):
+            body = skin.extract_cells(skin.cell_data["side"] == side).extract_surface(algorithm=None)
+            away = np.linalg.norm(body.points[:, :2] - axis[:2], axis=1)
+            assert away.max() == pytest.approx(radius, rel=1e-4)
+            assert body.points[:, :2].mean(axis=0) == pytest.approx(axis[:2], abs=1e-3 * radius)
+            height = np.ptp(body.points[:, 2])
+            assert body.volume == pytest.approx(np.pi * radius**2 * height, rel=0.03)
+            assert np.linalg.norm(body.point_data["Normals"], axis=1) == pytest.approx(1.0, rel=1e-5)
+
+
+def test_skin_of_a_glb_lets_see_through(opened: Callable[[str], ts.Result], tmp_path: Path) -> None:
+    """Section 3.9.4 of the specification: an alpha below 1 is heeded where the mode is BLEND."""
+    _, content, binary = glb(opened("suture").export("gltf", tmp_path / "run.glb", 2)[0])
+    fiber, skin = content["materials"]
+    assert "alphaMode" not in fiber
+    assert skin["alphaMode"] == "BLEND"
+    assert 0.2 < skin["pbrMetallicRoughness"]["baseColorFactor"][3] < 0.8
+    for mesh, axis in zip(
+        content["meshes"][1:], opened("suture").dataset["skin_position"][2].values, strict=True
+    ):
+        (primitive,) = mesh["primitives"]
+        assert primitive["material"] == 1
+        x = accessor(content, binary, primitive["attributes"]["POSITION"]).astype(float)
+        assert x.mean(axis=0) == pytest.approx(axis, abs=1e-3 * np.ptp(x))
+        faces = accessor(content, binary, primitive["indices"]).reshape(-1, 3)
+        a, b, c = (x[faces[:, k]] for k in range(3))
+        assert np.sum(a * np.cross(b, c)) > 0  # faces look out
+    _, content, _ = glb(opened("tighten").export("gltf", tmp_path / "knot.glb")[0])
+    assert [material["name"] for material in content["materials"]] == ["fiber"]
 
 
 def test_a_closed_strand_returns_to_its_first_point(tmp_path: Path) -> None:
@@ -158,8 +203,12 @@ def test_a_glb_is_sound(protocol: str, opened: Callable[[str], ts.Result], tmp_p
     assert asset["extras"]["time_s"] == float(result.dataset["time"][result.last_held])
     strands = strands_at(result.dataset, result.last_held)
     radius = result.dataset.attrs["radius"]
-    assert content["scenes"][0]["nodes"] == list(range(len(strands)))
-    for strand, mesh in zip(strands, content["meshes"], strict=True):
+    assert content["scenes"][0]["nodes"] == list(range(len(content["meshes"])))
+    names = [mesh["name"] for mesh in content["meshes"]]
+    skin = ["skin 0", "skin 1"] if "skin_position" in result.dataset else []
+    assert names == [node["name"] for node in content["nodes"]]
+    assert names == [f"strand {k}" for k in range(len(strands))] + skin
+    for strand, mesh in zip(strands, content["meshes"], strict=False):
         (primitive,) = mesh["primitives"]
         named = primitive["attributes"]
         x, normal, colour = (
@@ -202,6 +251,7 @@ def test_a_glb_is_read_by_vtk(protocol: str, opened: Callable[[str], ts.Result],
     result = opened(protocol)
     mesh = pyvista.read(result.export("gltf", tmp_path / "run.glb")[0])
     x = np.concatenate([s.x for s in strands_at(result.dataset, result.last_held)])
+    x = np.concatenate([x, *(m.vertices for m in skin_meshes(result.dataset, result.last_held))])
     low, high = np.array(mesh.bounds).reshape(3, 2).T
     reach = 1.01 * result.dataset.attrs["radius"]
     assert (np.abs(low - x.min(axis=0)) <= reach).all()

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
 import os
 import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import numpy as np
@@ -232,18 +234,40 @@ def test_ctrl_c_says_how_many_runs_are_stored(tmp_path, stored_reef):
 
 
 def test_ctrl_c_at_the_end_of_a_run_keeps_the_next_from_beginning(tmp_path, monkeypatch):
-    complete = store.complete
+    give_name = store.give_name
 
     def then_stopped(*arguments):
-        complete(*arguments)
+        give_name(*arguments)
         signal.raise_signal(signal.SIGINT)
 
-    monkeypatch.setattr(store, "complete", then_stopped)
+    monkeypatch.setattr(store, "give_name", then_stopped)
     with pytest.raises(KeyboardInterrupt) as stopped:
         results({"reef": short("reef"), "thief": short("thief")}, tmp_path, workers=1)
     said = f"interrupted; 1 of 2 runs is stored in {str(tmp_path)!r}; the same command goes on"
     assert str(stopped.value) == said
     assert list(tmp_path.iterdir()) == [run_path("reef", short("reef"), tmp_path)]
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kills a process")
+def test_a_process_that_is_killed_is_one_sentence(tmp_path):
+    """As the system does when memory runs out; the other process ends too, though a run goes on in it."""
+    specs = {name: PrisonEscape(knot=name, duration=60.0, frames=60000) for name in ("reef", "thief")}
+    killed = []
+
+    def kill(folder):
+        until = time.monotonic() + 300
+        while not list(folder.glob("*.part")) and time.monotonic() < until:
+            time.sleep(0.02)
+        killed.append(multiprocessing.active_children()[0])
+        killed[0].kill()
+
+    killer = threading.Thread(target=kill, args=(tmp_path,))
+    killer.start()
+    with pytest.raises(TorsadeError, match="a process that makes runs was killed, as it is when memory"):
+        results(specs, tmp_path, workers=2)
+    killer.join()
+    assert len(killed) == 1
+    assert not multiprocessing.active_children()
 
 
 @pytest.mark.slow

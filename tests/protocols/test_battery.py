@@ -6,12 +6,14 @@ import itertools
 import json
 import math
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import torsade as ts
+from torsade import places
 from torsade.observables import hinge_twist
 from torsade.protocols import Battery, discharge
 from torsade.protocols.battery import KINDS
@@ -328,3 +330,25 @@ def test_means_on_the_way_do_not_know_how_long_it_takes() -> None:
         reached = energy[-1] <= 0.01
         assert found == (pytest.approx(middle, rel=1e-2) if reached else None)
     assert mean_on_the_way(np.exp(-t[:1000]), t[:1000], (0.5, 0.01)) is None
+
+
+def test_ctrl_c_while_it_is_charged_says_so(short: ts.Result, tmp_path: Path) -> None:
+    """Nothing of it is kept; what an earlier run left stays, and is gone on with by the same command."""
+
+    def stop(wanted: str, share: float = 0.0) -> Callable[[float, str], None]:
+        def look(done: float, note: str) -> None:
+            if note.startswith(wanted) and done > share:
+                raise KeyboardInterrupt
+
+        return look
+
+    out = tmp_path / "run.zarr"
+    charged = "interrupted while the battery was charged, which is always done anew; "
+    with pytest.raises(Interrupted, match=f"^{charged}nothing is saved$"):
+        SHORT.run(stop("charging"), out)
+    assert list(tmp_path.iterdir()) == []
+    with pytest.raises(Interrupted, match="are saved"):
+        SHORT.run(stop("t =", 0.5), out)
+    with pytest.raises(Interrupted, match=f"^{charged}'{places.part_of(out)}' is as it was$"):
+        SHORT.run(stop("charging"), out, resume=True)
+    assert SHORT.run(out=out, resume=True).dataset["position"].equals(short.dataset["position"])

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import torsade as ts
-from torsade import places, recording, store
+from torsade import places, recording, store, zarr_files
 from torsade.protocols import PrisonEscape
 from torsade.protocols.driving import Interrupted
 
@@ -117,14 +117,11 @@ def test_what_is_called_replaced_is_left_alone(tmp_path: Path) -> None:
 
 
 def test_a_full_disk_leaves_no_rubbish(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    import xarray
-
-    def full(self: object, path: Path, **options: object) -> None:
-        Path(path).mkdir()
+    def full(path: Path, content: bytes) -> None:
         raise OSError(28, "No space left on device")
 
     result = SPEC.run()
-    monkeypatch.setattr(xarray.Dataset, "to_zarr", full)
+    monkeypatch.setattr(zarr_files, "_put", full)
     for attempt in (lambda: SPEC.run(out=tmp_path / "reef.zarr"), lambda: result.save(tmp_path / "a.zarr")):
         with pytest.raises(ts.TorsadeError, match="no space left on device"):
             attempt()
@@ -138,6 +135,7 @@ def test_a_disk_that_is_full_at_the_first_frame(
         with places.writing(part):
             raise OSError(28, "No space left on device")
 
+    monkeypatch.setattr(recording, "FLUSH_EVERY", 0.0)
     monkeypatch.setattr(store, "write_restart", full)
     with pytest.raises(ts.TorsadeError, match=r"no space left on device\); give a place with room") as caught:
         SPEC.run(out=tmp_path / "reef.zarr", overwrite=True)
@@ -289,13 +287,13 @@ def test_ctrl_c_when_the_result_has_just_got_its_name(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The run is complete, and what was to come after it is not begun."""
-    complete = store.complete
+    give_name = store.give_name
 
     def then_stopped(*arguments: Any) -> None:
-        complete(*arguments)
+        give_name(*arguments)
         signal.raise_signal(signal.SIGINT)
 
-    monkeypatch.setattr(store, "complete", then_stopped)
+    monkeypatch.setattr(store, "give_name", then_stopped)
     out = tmp_path / "reef.zarr"
     with pytest.raises(Interrupted, match=rf"; the result is complete in '{out}'$") as stopped:
         SPEC.run(out=out)

@@ -161,3 +161,10 @@ def test_numbers_that_are_damaged_are_refused(result: ts.Result, change: dict[st
     damaged = ts.Result(result.dataset.assign_attrs(change))
     with pytest.raises(TorsadeError, match="cannot be read"):
         damaged.report()
+
+
+@pytest.mark.parametrize(
+    ("name", "throws"), [("reef", "3,-3"), ("Surgeon's knot", "5,-3"), ("surgeon", "5,-3"), ("granny", "3,3")]
+)
+def test_throws_may_be_given_by_name(name: str, throws: str) -> None:
+    assert Suture(throws=name) == Suture(throws=throws)

@@ -8,7 +8,7 @@ import sys
 import time
 from pathlib import Path
 
-from torsade.sweep.lanes import ONE_THREAD
+from torsade.sweep.processes import ONE_THREAD
 from torsade.sweep.unit import OTHER_VERSION, Outcome
 
 

@@ -151,7 +151,7 @@ REFUSED = {
         "unequal numbers of values: twist has 2, seed has 3; give as many",
     ),
     "twice": ({"fixed": {"seed": 1}, "grid": {"seed": [1, 2]}}, "seed is given in two places"),
-    "same": ({"grid": {"twist": ["0 deg", 0]}}, "points 0 and 1 are the same, twist = 0 rad"),
+    "same": ({"grid": {"twist": ["0 deg", 0]}}, "points 0 and 1 are the same, twist = 0 deg"),
     "bound": ({"grid": {"disorder": [0.1, 0.9]}}, r"disorder is 0.9; give a number of at most 0.5 \(at "),
     "together": (
         {"grid": {"length": ["24 cm", "2 cm"]}},

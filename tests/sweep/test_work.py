@@ -72,7 +72,7 @@ def test_workers_of_another_version_are_refused(run):
 
 
 def test_an_executor_that_is_broken_is_named(run):
-    from torsade.sweep.lanes import pool
+    from torsade.sweep.processes import pool
 
     with pool(1) as executor, pytest.raises(TorsadeError, match="has lost its workers"):
         run(["kill-9", "a-1"], [Shared(executor, lambda: 1)])

@@ -14,7 +14,7 @@ import pytest
 from torsade import _compile
 from torsade.errors import TorsadeError
 from torsade.provenance import cores
-from torsade.sweep.lanes import ONE_THREAD, pool
+from torsade.sweep.processes import ONE_THREAD, pool
 from torsade.sweep.warm import warm_up
 
 SCRIPT = """

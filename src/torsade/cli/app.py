@@ -15,6 +15,7 @@ from torsade.cli.knots_app import knots_app
 from torsade.cli.messages import shown
 from torsade.cli.movie_app import add_command as add_movie
 from torsade.errors import TorsadeError
+from torsade.units import said
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
@@ -397,5 +398,5 @@ def _help(spec: type[Spec], name: str) -> str:
     text = f"{meaning}; {rest}" if rest else meaning
     if field.default is None or field.is_required():
         return text + "."
-    shown = f"{field.default:g} {dimension.unit}".strip() if dimension else str(field.default)
+    shown = said(field.default, dimension) if dimension else str(field.default)
     return f"{text} [default: {shown}]."

@@ -25,7 +25,8 @@ def _battery(result: Result, report: dict[str, Any]) -> Iterator[tuple[str, str]
     yield parts[0], f"{parts[1]} turns, kept to {report['link_error']:.1e}"
     energies = report["energy_E0"]
     kinds = ", ".join(f"{kind} {energies[kind]:.4f}" for kind in ("bend", "twist", "stretch", "contact"))
-    yield "energy", f"{energies['total']:.4f} E_0: {kinds}"
+    joules = energies["total"] * report["E0_J"]
+    yield "energy", f"{energies['total']:.4f} E_0, {joules:.4g} J: {kinds}"
     if spec["stop"] == "charged":
         yield from _spent(report)
         return

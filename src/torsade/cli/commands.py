@@ -25,9 +25,6 @@ if TYPE_CHECKING:
 
 __all__ = ["check_drawings", "demo", "now_and_then", "progress", "run"]
 
-BREAKING = ("snap-twist", "snap-quench")
-"""Protocols whose results are drawn in pieces."""
-
 SAY_EVERY = 30.0
 """Time between lines about progress where there is no bar [s]."""
 
@@ -162,7 +159,7 @@ def _run(spec: Spec, out: str | None, resume: bool, overwrite: bool, quiet: bool
             raise KeyboardInterrupt(
                 f"{error}, and the same command with --resume goes on from there"
             ) from None
-        if out is None and str(error):
+        if out is None and getattr(error, "frames", None):
             raise KeyboardInterrupt(f"{error}; give --out NAME.zarr to keep what is done") from None
         raise
 
@@ -245,19 +242,9 @@ def _movie(result: Result, path: str, quiet: bool) -> None:
 
 
 def _plot(result: Result, path: str) -> None:
-    from torsade.view import battery, cascade, plots
+    from torsade.view.history import plot_result
 
-    by_protocol = {
-        "prison-escape": plots.plot_separation,
-        "tighten": plots.plot_tightening,
-        "reidemeister": plots.plot_move,
-        "bend-twist": plots.plot_bent,
-        "pendulum": plots.plot_swing,
-        "battery": battery.plot_battery,
-        "suture": plots.plot_wound,
-        **dict.fromkeys(BREAKING, cascade.plot_cascade),
-    }
-    by_protocol[result.protocol](result.dataset, path)
+    plot_result(result.dataset, path)
 
 
 def _print(result: Result, out: str | None, json: bool) -> None:

@@ -108,9 +108,11 @@ COMMANDS = MappingProxyType(
             "nothing is given; give the folder of a sweep, such as pieces",
             "{} comes after the query; put the whole query in one pair of quotes",
         ),
-        "info": _Command((), ("--json",), _NO_RESULT, _RESULT),
-        "export": _Command(("--to", "--frames", "--out"), ("--json", "--overwrite"), _NO_EXPORT, _RESULT),
-        "open": _Command(("--frame", "--picture"), ("--json",), _NO_RESULT, _RESULT),
+        "info": _Command((), ("--json", "--salvage"), _NO_RESULT, _RESULT),
+        "export": _Command(
+            ("--to", "--frames", "--out"), ("--json", "--overwrite", "--salvage"), _NO_EXPORT, _RESULT
+        ),
+        "open": _Command(("--frame", "--picture", "--plot"), ("--json", "--salvage"), _NO_RESULT, _RESULT),
         "movie": _Command(
             ("--out", "--seconds", "--fps", "--size", "--frames", "--colour"),
             ("--whole", "--json"),
@@ -128,6 +130,9 @@ COMMANDS = MappingProxyType(
     }
 )
 """By their words in the shell."""
+
+MEANT = MappingProxyType(dict.fromkeys(("plot", "draw", "view", "show"), "open"))
+"""Commands by words that are likely to be tried for them."""
 
 
 def first_words() -> list[str]:
@@ -165,6 +170,8 @@ def parse_error(error: CycloptsError, arguments: Sequence[str]) -> str:
     if kind == "UnusedCliTokensError":
         if unused[0] in arguments[2:3] and (option := _meant(unused[0], arguments[1])):
             return f"{quoted(unused[0])} comes without its option; did you mean {option} {shown(unused[0])}?"
+        if whole := _parted(unused[0], arguments):
+            return f"{quoted(unused[0])} belongs to the value before it; did you mean {whole}?"
         return (
             f"{quoted(unused[0])} belongs to no option; give every value after its option, and quote values "
             'with units, such as --force "15 N"'
@@ -189,6 +196,19 @@ def _meant(word: str, protocol: str) -> str | None:
     if word.lower().endswith(SUFFIXES):
         needed.insert(0, "centerline")
     return next((flag(name) for name in (*needed, "knot") if name in fields), None)
+
+
+def _parted(word: str, arguments: Sequence[str]) -> str | None:
+    """The option with its whole value, where a word is the rest of one: a unit, or the second throw."""
+    k = list(arguments).index(word) if word in arguments else 0
+    option, value = arguments[max(k - 2, 0)], arguments[k - 1]
+    if not re.fullmatch(r"--[a-z-]+", option, re.I) or not re.fullmatch(
+        r"[+-]?[\d.]+(e[+-]?\d+)?,?", value, re.A
+    ):
+        return None
+    if option == "--throws" and re.fullmatch(r"[+-]?\d+", word, re.A):
+        return f"{option} {value.rstrip(',')},{word}"
+    return f'{option} "{value} {word}"' if re.fullmatch(r"[^\W\d][\w/^ ]{0,20}|[%°]", word) else None
 
 
 def shown(word: str) -> str:
@@ -225,8 +245,9 @@ def _unknown_option(option: str, arguments: Sequence[str]) -> str:
         if name in spec.hints:
             return re.sub(r"'(\w+)'", lambda m: flag(m[1]), spec.hints[name]).replace("field", "option")
         known = [flag(k) for k in spec.model_fields if k != "protocol"] + [flag(k) for k in OPTIONS]
-    near = difflib.get_close_matches(option, known, n=1, cutoff=0.6)
-    hint = f"did you mean {near[0]}?" if near else f"see {command} --help"
+    longer = [name for name in known if name.startswith(f"{option}-")]
+    near = longer or difflib.get_close_matches(option, known, n=1, cutoff=0.6)
+    hint = f"did you mean {' or '.join(near)}?" if near else f"see {command} --help"
     return f"{command.removeprefix('torsade ')} has no option {shown(option)}; {hint}"
 
 
@@ -244,7 +265,11 @@ def _unknown_command(word: str, arguments: Sequence[str]) -> str:
     if arguments[:1] == ["knots"] and word != "knots":
         return f"there is no command {quoted('knots ' + word)}; choose knots list, knots show or knots build"
     first = first_words()
-    near = difflib.get_close_matches(word, [*first, "--help", "--version"], n=1)
+    near = (
+        [MEANT[word]]
+        if word in MEANT
+        else difflib.get_close_matches(word, [*first, "--help", "--version"], n=1)
+    )
     known = f"choose {', '.join(first[:-1])} or {first[-1]}, or see torsade --help"
     hint = f"did you mean {near[0]!r}?" if near else known
     what = "option" if word.startswith("-") else "command"

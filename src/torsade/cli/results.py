@@ -12,21 +12,24 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pydantic.fields import FieldInfo
 
 from torsade import places
 from torsade.cli.commands import check_drawings, progress
 from torsade.cli.table import print_file, print_grid, print_rows, print_table
 from torsade.errors import TorsadeError, counted, quoted
 from torsade.protocols.files import PROTOCOLS
+from torsade.protocols.sentences import dimension_of
 from torsade.results import Result, open_result
+from torsade.units import said
 
 __all__ = ["export", "info", "show"]
 
 
-def info(given: str, json: bool) -> int:
+def info(given: str, json: bool, salvage: bool) -> int:
     """Say what a result is."""
     path = _found(given)
-    result = open_result(path)
+    result = open_result(path, salvage=salvage)
     about = _about(path, result)
     if json:
         print(json_format.dumps(_finite(about), allow_nan=False), flush=True)
@@ -44,13 +47,21 @@ def info(given: str, json: bool) -> int:
     return 0
 
 
-def export(given: str, to: str, frames: str | None, out: str | None, json: bool, overwrite: bool) -> int:
+def export(
+    given: str,
+    to: str,
+    frames: str | None,
+    out: str | None,
+    json: bool,
+    overwrite: bool,
+    salvage: bool,
+) -> int:
     """Write a result for other programs, and say what was written."""
     from torsade.export import FORMATS
     from torsade.export import export as write
 
     path = _found(given)
-    result = open_result(path)
+    result = open_result(path, salvage=salvage)
     if out is None:
         out = str(path.with_name(path.name.removesuffix(".part").removesuffix(".zarr") + FORMATS.get(to, "")))
     try:
@@ -68,20 +79,30 @@ def export(given: str, to: str, frames: str | None, out: str | None, json: bool,
     return 0
 
 
-def show(given: str, frame: str | None, picture: str | None, json: bool) -> int:
-    """Show a result in a window, or draw it."""
+def show(
+    given: str, frame: str | None, picture: str | None, plot: str | None, json: bool, salvage: bool
+) -> int:
+    """Show a result in a window, or draw or plot it."""
     if frame is not None and not re.fullmatch(r"-?\d{1,9}", frame.strip(), re.A):
         raise TorsadeError(f"--frame is {quoted(frame)}; give a number such as 10, or -1 for the last frame")
-    check_drawings(picture, None)
+    check_drawings(picture, plot)
     path = _found(given)
-    result = open_result(path)
+    result = open_result(path, salvage=salvage)
     if result.frames == 0:
         raise TorsadeError(f"{str(path)!r} has no frame yet; wait for one")
-    result.show(picture, None if frame is None else int(frame))
+    if picture is not None or plot is None:
+        result.show(picture, None if frame is None else int(frame))
+    if plot is not None:
+        from torsade.view import plot_result
+
+        plot_result(result.dataset, plot)
+    drawn = {"picture": picture, "plot": plot}
     if json:
-        print(json_format.dumps({"result": str(path), "picture": picture}), flush=True)
-    elif picture is not None:
-        print_file("picture", picture)
+        print(json_format.dumps({"result": str(path), **drawn}), flush=True)
+        return 0
+    for what, file in drawn.items():
+        if file is not None:
+            print_file(what, file)
     return 0
 
 
@@ -160,7 +181,9 @@ def _state(about: dict[str, Any]) -> Iterator[tuple[str, str]]:
 def _provenance(about: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """What was asked for, and where the numbers come from."""
     came = about["provenance"]
-    yield "asked for", ", ".join(f"{k} = {_short(v)}" for k, v in about["spec"].items() if k != "protocol")
+    fields = PROTOCOLS[about["protocol"]].model_fields if about["protocol"] in PROTOCOLS else {}
+    asked = ((k, _short(v, fields.get(k))) for k, v in about["spec"].items() if k != "protocol")
+    yield "asked for", ", ".join(f"{name} = {text}" for name, text in asked)
     if "created" in came:
         yield "begun", str(came["created"])[:19].replace("T", " ") + " UTC"
     if "wall_s" in came and about["report"] is None:
@@ -185,10 +208,11 @@ def _provenance(about: dict[str, Any]) -> Iterator[tuple[str, str]]:
         yield "gone on with", f"{when} UTC from {counted(again.get('done', 0), 'frame')}{other}{elsewhere}"
 
 
-def _short(value: object) -> str:
-    if isinstance(value, str):
-        return value
-    return f"{value:g}" if isinstance(value, float) else quoted(value, 80)
+def _short(value: object, field: FieldInfo | None) -> str:
+    dimension = None if field is None else dimension_of(field)
+    if isinstance(value, float) and dimension is not None:
+        return said(value, dimension)
+    return value if isinstance(value, str) else quoted(value, 80)
 
 
 def _sized(variable: dict[str, Any]) -> str:

@@ -26,9 +26,12 @@ OPEN_EXAMPLES = """Examples:
 
 torsade open reef.zarr
 
-torsade open reef.zarr --frame 10 --picture reef.png"""
+torsade open reef.zarr --frame 10 --picture reef.png
+
+torsade open reef.zarr --plot reef-speed.pdf"""
 
 _JSON = "Print JSON, and nothing else, on the standard output."
+_SALVAGE = "Where files of numbers are lost, take the frames before."
 _RESULT = "A result: NAME.zarr, or NAME.zarr.part of a run that goes on or was interrupted."
 
 
@@ -44,6 +47,7 @@ def _info(
     /,
     *,
     json: Annotated[bool, Parameter(help=_JSON)] = False,
+    salvage: Annotated[bool, Parameter(help=_SALVAGE)] = False,
 ) -> int:
     """Say what a result holds: what was run, how far it came, its numbers, where they come from.
 
@@ -51,7 +55,7 @@ def _info(
     """
     from torsade.cli.results import info
 
-    return info(given, json)
+    return info(given, json, salvage)
 
 
 def _export(
@@ -83,6 +87,7 @@ def _export(
     ] = None,
     json: Annotated[bool, Parameter(help=_JSON)] = False,
     overwrite: Annotated[bool, Parameter(help="Replace files that exist.")] = False,
+    salvage: Annotated[bool, Parameter(help=_SALVAGE)] = False,
 ) -> int:
     """Write a result for other programs.
 
@@ -90,7 +95,7 @@ def _export(
     """
     from torsade.cli.results import export
 
-    return export(given, to, frames, out, json, overwrite)
+    return export(given, to, frames, out, json, overwrite, salvage)
 
 
 def _open(
@@ -108,12 +113,17 @@ def _open(
     picture: Annotated[
         str | None, Parameter(help="Draw to this PNG file, in place of opening a window.")
     ] = None,
+    plot: Annotated[
+        str | None,
+        Parameter(help="Plot the history to this file (.png, .pdf or .svg), in place of opening a window."),
+    ] = None,
     json: Annotated[bool, Parameter(help=_JSON)] = False,
+    salvage: Annotated[bool, Parameter(help=_SALVAGE)] = False,
 ) -> int:
-    """Show the frames of a result in a window that can be turned, or draw one of them to a file.
+    """Show the frames of a result in a window that can be turned, draw one of them, or plot its history.
 
     Drag to turn, scroll to come nearer; the slider, Left and Right go through the frames; Q closes.
     """
     from torsade.cli.results import show
 
-    return show(given, frame, picture, json)
+    return show(given, frame, picture, plot, json, salvage)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
+
+from torsade.protocols.suture import SIX
 
 if TYPE_CHECKING:
     from torsade.results import Result
@@ -12,14 +15,18 @@ __all__ = ["ROWS"]
 
 
 def _suture(result: Result, report: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    spec = result.spec
+    spec, model = result.spec, json.loads(result.dataset.attrs["model"])
     yield "protocol", result.protocol
-    yield "throws", report["throws"]
+    named = f", {SIX[report['throws']]}" if report["throws"] in SIX else ""
+    yield "throws", report["throws"] + named
     yield "preset", report["preset"]
     fiber = f"{spec['material']}, radius {1e3 * result.dataset.attrs['radius']:g} mm"
     yield "fiber", f"{fiber}, {result.dataset.sizes['node']} nodes"
     yield "pull", f"{1e3 * spec['force']:g} mN at each end for {spec['duration']:g} s"
-    counts = f"N = {report['crossings']}, Wr = {report['writhe']:+d}"
+    skin = f"radius {1e3 * model['skin_radius']:g} mm, gap {1e3 * model['gap']:g} mm at rest"
+    yield "skin", f"{skin}, stiffness {spec['skin_stiffness']:g} N/m"
+    writhe = report["writhe"]
+    counts = f"N = {report['crossings']}, Wr = {f'{writhe:+d}' if writhe else 0}"
     yield "knot", f"{counts}, tau = {report['tau']:.4g}"
     closed = report["closed_at_s"]
     yield (

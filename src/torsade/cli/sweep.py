@@ -7,7 +7,7 @@ import json as json_format
 import math
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -201,19 +201,24 @@ def _describe(catalogue: Catalogue, folder: str, overview: str) -> int:
         ]
     )
     print()
-    _grid(catalogue.query(f"{overview} LIMIT {FIRST_POINTS}"))
+    found = catalogue.query(f"{overview} LIMIT {FIRST_POINTS}")
+    known = [k for k in range(len(found.columns)) if any(row[k] is not None for row in found.rows)]
+    _print_grid([found.columns[k] for k in known], [[row[k] for k in known] for row in found.rows])
     return 0
 
 
 def _grid(found: Rows) -> None:
-    from torsade.cli.table import print_grid
-
-    shown = [[_cell(value) for value in row] for row in found.rows[:MOST_ROWS]]
-    print_grid(found.columns, shown)
+    _print_grid(found.columns, found.rows[:MOST_ROWS])
     if len(found.rows) > MOST_ROWS:
         print(
             f"... and {len(found.rows) - MOST_ROWS} more rows; add LIMIT, or print all with --csv or --json"
         )
+
+
+def _print_grid(columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
+    from torsade.cli.table import print_grid
+
+    print_grid(columns, [[_cell(value) for value in row] for row in rows])
 
 
 def _cell(value: Any) -> float | int | str | bool | None:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
@@ -19,6 +20,12 @@ __all__ = ["print_file", "print_grid", "print_rows", "print_table"]
 
 WIDTH = 24
 """Of the first column: the longest name in it."""
+
+GUTTER = 2
+"""Blanks between columns of a grid."""
+
+SHORTEST_FOLDED = 20
+"""Texts in a grid that are longer may be folded."""
 
 _STAGES = ("start", "top", "end")
 
@@ -52,13 +59,43 @@ def print_rows(rows: Iterable[tuple[str, str]]) -> None:
 
 
 def print_grid(columns: Sequence[str], rows: Iterable[Sequence[float | int | str | bool | None]]) -> None:
-    """Print a table of numbers under its headings; what is not known is left out."""
-    table = Table(box=None, pad_edge=False)
-    for name in columns:
-        table.add_column(name, overflow="fold")
-    for row in rows:
-        table.add_row(*(_cell(cell) for cell in row))
-    Console(highlight=False).print(table)
+    """Print a table under its headings; what is not known is left out.
+
+    A table that is too wide is printed in parts below each other, which begin with the same columns: numbers
+    are never folded, long texts are.
+    """
+    rows = [list(row) for row in rows]
+    cells = [[_cell(cell) for cell in row] for row in rows]
+    widths = [max(map(cell_len, column)) for column in zip(columns, *cells, strict=True)]
+    texts = [all(isinstance(row[k], str | None) for row in rows) for k in range(len(columns))]
+    folds = [text and width > SHORTEST_FOLDED for text, width in zip(texts, widths, strict=True)]
+    console = Console(highlight=False)
+    taken = [SHORTEST_FOLDED if fold else width for fold, width in zip(folds, widths, strict=True)]
+    for number, part in enumerate(_parts(taken, console.width)):
+        table = Table(box=None, pad_edge=False)
+        for k in part:
+            table.add_column(columns[k], overflow="fold", no_wrap=not folds[k])
+        for row in cells:
+            table.add_row(*(Text(row[k]) for k in part))
+        if number:
+            console.print()
+        console.print(table)
+
+
+def _parts(widths: Sequence[int], room: int) -> Iterator[list[int]]:
+    """Which columns of these widths stand side by side; the first ones, which name a row, in all parts."""
+    lead, taken = [0], widths[0]
+    while len(lead) < len(widths) and taken + GUTTER + widths[len(lead)] <= room / 3:
+        taken += GUTTER + widths[len(lead)]
+        lead.append(len(lead))
+    part, filled = list(lead), taken
+    for k in range(len(lead), len(widths)):
+        if len(part) > len(lead) and filled + GUTTER + widths[k] > room:
+            yield part
+            part, filled = list(lead), taken
+        part.append(k)
+        filled += GUTTER + widths[k]
+    yield part
 
 
 def _cell(cell: float | int | str | bool | None) -> str:

@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import re
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -26,14 +27,14 @@ NUMBERS = (
 
 
 def figure(number: str) -> Figure:
-    """The figure of this number in the thesis, such as "4-5".
+    """The figure of this number in the thesis, such as "4-5"; "4.5" and "Figure 4-5" are read too.
 
     Raises
     ------
     TorsadeError
         When there is no such figure here.
     """
-    name = number.strip().replace(".", "-")
+    name = re.sub(r"^fig(ure|\.)?[\s_-]*", "", number.strip(), flags=re.I).replace(".", "-").replace("_", "-")
     if name not in NUMBERS:
         raise TorsadeError(f"there is no figure {quoted(number)}; give one of {', '.join(NUMBERS)}")
     found: Figure = import_module(f"torsade.figures.figure_{name.replace('-', '_')}").FIGURE

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import multiprocessing
-import os
 import re
-import signal
 from collections.abc import Iterator, Mapping
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import BrokenExecutor, as_completed
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from torsade import places, stopping
+from torsade import places
 from torsade.errors import TorsadeError, counted, reason_of
 from torsade.protocols import stored
 from torsade.provenance import cores
 from torsade.results import Result
+from torsade.sweep.processes import end, heed, kill, pool
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Progress, Spec
@@ -171,46 +170,24 @@ def _outcomes(
             for label, one in job.items():
                 yield _run({label: one}, fresh)
         return
-    # Fresh interpreters: forking one that has threads, as compiled kernels do, can hang.
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(workers, len(jobs)), context, initializer=_wait) as pool:
-        waiting = [pool.submit(_run_apart, job, fresh) for job in jobs]
-        try:
-            for future in as_completed(waiting):
-                yield future.result()
-        except KeyboardInterrupt:
-            if stopping.by_sigterm():  # unlike Ctrl-C, it may have come to this process alone
-                for worker in multiprocessing.active_children():
-                    worker.terminate()
-            raise
-        finally:
-            pool.shutdown(cancel_futures=True)
-
-
-def _wait() -> None:
-    """Leave Ctrl-C and SIGTERM to whoever waits for this process, while it has nothing to do."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, _leave)
-
-
-def _leave(number: int, frame: object) -> None:
-    """Begin nothing more, and end a process that nobody waits for any more."""
-    stopping.heard(number)
-    waiting = multiprocessing.parent_process()
-    if waiting is None or not waiting.is_alive():
-        os._exit(128 + number)
-
-
-def _run_apart(job: Mapping[str, tuple[Spec, Path]], fresh: bool) -> dict[str, str | None]:
-    """Runs in a process of their own, which Ctrl-C and SIGTERM stop."""
-    if stopping.by_sigterm():
-        raise KeyboardInterrupt
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    signal.signal(signal.SIGTERM, stopping.stop)
+    stop = multiprocessing.get_context("spawn").Event()
+    processes = pool(min(workers, len(jobs)), stop)
+    waiting = [processes.submit(_run, job, fresh) for job in jobs]
     try:
-        return _run(job, fresh)
+        for future in as_completed(waiting):
+            yield future.result()
+    except BrokenExecutor:
+        kill(processes)
+        raise TorsadeError(
+            "a process that makes runs was killed, as it is when memory runs out; the same command goes on, "
+            "with --workers 1 if it happens again"
+        ) from None
+    except BaseException:
+        stop.set()
+        end(processes, waiting)
+        raise
     finally:
-        _wait()
+        processes.shutdown(cancel_futures=True)
 
 
 def _run(job: Mapping[str, tuple[Spec, Path]], fresh: bool) -> dict[str, str | None]:
@@ -221,7 +198,7 @@ def _run(job: Mapping[str, tuple[Spec, Path]], fresh: bool) -> dict[str, str | N
         # What is complete and yet to be run is damaged.
         anew = fresh or path.exists() or (part.exists() and not stored.goes_on(part))
         try:
-            spec.run(out=path, resume=not anew, overwrite=anew)
+            spec.run(heed, path, resume=not anew, overwrite=anew)
             failed[label] = None
         except TorsadeError as error:
             failed[label] = str(error)

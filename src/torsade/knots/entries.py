@@ -142,10 +142,12 @@ def _strands() -> Iterator[Entry]:
 def suture(bottom: int, top: int) -> Entry:
     """Two throws of half turns, the bottom one first."""
     aliases = SUTURES.get((bottom, top), ())
+    hands = ["right-handed" if turns > 0 else "left-handed" for turns in (bottom, top)]
+    first = f"{abs(bottom)} {hands[0]}" if hands[0] != hands[1] else str(abs(bottom))
     return Entry(
         f"{bottom},{top}",
         "suture",
-        f"Suture of {abs(bottom)} and {abs(top)} half turns" + (f": {aliases[0]}" if aliases else ""),
+        f"Suture of {first} and {abs(top)} {hands[1]} half turns" + (f": {aliases[0]}" if aliases else ""),
         partial(suture_diagram, bottom, top),
         aliases,
         STANDING,

@@ -14,6 +14,7 @@ from torsade.knots.entries import KINDS, Entry, entries, strand_knot, suture, to
 from torsade.topology.codes import code_kind, from_text
 from torsade.topology.diagram import Diagram
 from torsade.topology.named import COMMON_NAMES, looks_like_a_name, named_diagram
+from torsade.topology.table import contents
 from torsade.topology.tangle import cut
 
 __all__ = [
@@ -90,7 +91,8 @@ def interpret(text: str) -> Entry:
     if kind is not None:
         diagram = from_text(code)
         return Entry(code, kind, kind, lambda: diagram, source="given")
-    if re.fullmatch(r"[\d\s,;()+-]+", code) and not re.fullmatch(_SUTURE, code):
+    listed = re.fullmatch(r"[\d\s,;()+-]+", code) and not re.fullmatch(_SUTURE, code)
+    if listed and not _in_table(code):
         raise TorsadeError(
             f"{quoted(code)} is a list of numbers; say which code it is, such as 'DT: 4 6 2', "
             "'braid: 1 -2 1 -2' or 'Gauss: -1 2 -3 1 -2 3'"
@@ -292,11 +294,22 @@ def _overhand(n: int) -> Entry:
     )
 
 
+def _in_table(text: str) -> list[str]:
+    """Knots of the table that a text with other marks may mean: 3_1 for 31, 3.1 or K3_1, m3_1 for 3_1m."""
+    found = re.fullmatch(r"(m?)k?(\d{1,5})(?:[\s._-]+(\d{1,3}))?(m?)", text.strip().lower(), re.A)
+    if found is None:
+        return []
+    m, digits, rest, after = found.groups()
+    splits = [(digits, rest)] if rest else [(digits[:k], digits[k:]) for k in (1, 2)]
+    names = [f"{crossings}_{number}" for crossings, number in splits]
+    return [f"{m or after}{name}" for name in names if name in contents()["knots"]]
+
+
 def _unknown(name: str) -> str:
     """What to say of a name that is not known."""
     words = [word for word in _known() if re.search(r"[a-z]{3}", word)]  # near a number is any other
-    near = difflib.get_close_matches(_plain(name), words, n=1, cutoff=0.7)
-    hint = f"did you mean {near[0]!r}? " if near else ""
+    near = _in_table(name) or difflib.get_close_matches(_plain(name), words, n=1, cutoff=0.7)
+    hint = f"did you mean {' or '.join(map(repr, near))}? " if near else ""
     return (
         f"nothing is called {quoted(name)}; {hint}give a name that torsade knots list shows, such as reef, "
         "overhand, 3_1, m3_1#4_1, L5a1 or T(3,4), or a code"

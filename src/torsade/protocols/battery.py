@@ -140,7 +140,8 @@ class Battery(Driven):
         60,
         ge=1,
         le=1_000_000,
-        description="Frames to record after the one at t = 0, evenly spaced in the logarithm of time.",
+        description="Frames to record after the one at t = 0, evenly spaced in the logarithm of time; fewer "
+        "if it is empty before the longest time.",
     )
 
     @field_validator("knot")
@@ -264,7 +265,10 @@ class Battery(Driven):
         motion = Motion(assembly, self.model(), ends.free(assembly), state, self.stepping)
         unit = self.unit_time
         longest = LONGEST * unit if self.charging is None else self.charging
-        return motion, charge(motion, self.fiber_material, self.section, unit, longest, tell)
+        try:
+            return motion, charge(motion, self.fiber_material, self.section, unit, longest, tell)
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt("while the battery was charged, which is always done anew") from None
 
     def trial(self) -> Trial:
         return self.prepared(SILENT)

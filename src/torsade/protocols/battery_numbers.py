@@ -14,6 +14,7 @@ from torsade.protocols.charging import Charge
 from torsade.protocols.discharge import Discharge, crossing_losses, discharge_times, mean_on_the_way
 from torsade.results import Result
 from torsade.topology.identify import identify
+from torsade.units import rounded
 
 __all__ = ["Units", "concluded", "reported"]
 
@@ -66,7 +67,7 @@ def concluded(
         "loss_per_T0": charge.loss,
         "energy_E0": cut_energies | {"total": total},
         "energy_final_E0": float(energy[-1]) / units.energy if len(energy) > 1 else total,
-        "cut_at": at_cut["place"],
+        "cut_at": rounded(at_cut["place"]),
         "discharge_time_T0": {
             str(share): None if t is None else t / unit for share, t in zip(SHARES, shares, strict=True)
         },

@@ -18,6 +18,7 @@ from torsade.protocols.interrupted import Interrupted
 from torsade.recording import Recording
 from torsade.results import Result
 from torsade.stopping import STOPPING, Late, Patience
+from torsade.units import evenly
 from torsade.variables import SAMPLE
 
 if TYPE_CHECKING:
@@ -43,8 +44,8 @@ def drive(
     try:
         with compilation_told(tell):
             trial = spec.prepared(tell)
-    except KeyboardInterrupt:
-        raise Interrupted(0.0, 0, None, earlier=_begun(out)) from None
+    except KeyboardInterrupt as stopped:
+        raise Interrupted(0.0, 0, None, earlier=_begun(out), when=str(stopped)) from None
     motion = trial.motion
     recording = _begin(spec, trial, out, resume, overwrite)
     try:
@@ -147,7 +148,7 @@ def _frame_times(spec: Driven, trial: Trial) -> Floats:
     """Times of frames [s]."""
     if trial.frame_times is not None:
         return trial.frame_times
-    return np.linspace(0.0, spec.lasting, spec.frames + 1)
+    return np.array(evenly(0.0, spec.lasting, spec.frames))
 
 
 def _sample_times(spec: Driven, trial: Trial) -> Floats:
@@ -157,7 +158,7 @@ def _sample_times(spec: Driven, trial: Trial) -> Floats:
     if trial.sample_times is not None:
         return trial.sample_times
     wanted = math.ceil(spec.lasting / SAMPLE_EVERY * (1 - 1e-9))
-    return np.linspace(0.0, spec.lasting, min(max(wanted, FEWEST_SAMPLES), MOST_SAMPLES) + 1)
+    return np.array(evenly(0.0, spec.lasting, min(max(wanted, FEWEST_SAMPLES), MOST_SAMPLES)))
 
 
 def _stops(spec: Driven, trial: Trial) -> list[tuple[float, bool, bool]]:

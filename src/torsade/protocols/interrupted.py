@@ -14,7 +14,7 @@ class Interrupted(KeyboardInterrupt):
 
     Attributes: `time` of the last frame [s], `frames` recorded, `part`, the folder that holds them, or None;
     `earlier`, the folder of a run that was to be gone on with, which is as it was; `whole`, that of one which
-    was complete when the signal was heard.
+    was complete when the signal was heard. `when` says what was going on before there was a frame.
     """
 
     def __init__(
@@ -24,9 +24,11 @@ class Interrupted(KeyboardInterrupt):
         part: Path | None,
         earlier: Path | None = None,
         whole: Path | None = None,
+        when: str = "",
     ) -> None:
         self.time, self.frames, self.part = time, frames, part
-        reached = f"at t = {time:.4g} s" if frames else "before the first frame"
+        before = "before the first frame" if earlier is None else "before a further frame"
+        reached = f"at t = {time:.4g} s" if frames else when or before
         what = f"{counted(frames, 'frame')} {'is' if frames == 1 else 'are'} saved"
         lost = "nothing is saved" if earlier is None else f"{str(earlier)!r} is as it was"
         kept = lost if part is None else f"{what} in {str(part)!r}"

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from torsade.errors import TorsadeError
 from torsade.material import Material
 from torsade.protocols.base import Driven, Positive
-from torsade.units import Density, Length, Number, Pressure, Rate, Time, Whole
+from torsade.units import Density, Length, Number, Pressure, Rate, Time, Whole, rounded
 
 if TYPE_CHECKING:
     from torsade.arrays import Floats
@@ -216,8 +216,10 @@ class Breakable(Rod):
             "criterion": spec["criterion"],
             **{key: attrs.get(key) for key in ("critical_curvature_per_m", "end_distance_m", "li")},
             "fragments": attrs["fragments"],
-            "lengths_m": list(attrs["lengths_m"]),
-            "breaks": [{"time_s": t, "place_m": x, "stress_ratio": ratio} for t, x, ratio in named],
+            "lengths_m": [rounded(length) for length in attrs["lengths_m"]],
+            "breaks": [
+                {"time_s": rounded(t), "place_m": rounded(x), "stress_ratio": ratio} for t, x, ratio in named
+            ],
             "duration_s": float(result.dataset["time"].values[-1]),
             "steps": attrs["steps"],
             "wall_s": attrs["wall_s"],

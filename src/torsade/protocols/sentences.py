@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import math
 from typing import TYPE_CHECKING, get_args
 
 from pydantic import ValidationError
@@ -63,6 +64,8 @@ def sentence(spec: type[Spec], error: ValidationError) -> str:
         dimension = dimension_of(field)
         what = indefinite(dimension.name) if dimension else "a number"
         unit = f" {dimension.unit}" if dimension and dimension.unit else ""
+        if dimension and dimension.name == "angle" and context[key]:
+            unit += f" ({math.degrees(context[key]):.3g} deg)"
         return f"{name} is {given}; give {what} {word} {quoted(context[key])}{unit}"
     return f"{name} is {given}; {_expected(spec, name)}"
 
@@ -82,4 +85,6 @@ def _expected(spec: type[Spec], name: str) -> str:
     dimension = dimension_of(field)
     if dimension:
         return f'give {indefinite(dimension.name)} such as "{dimension.example}"'
-    return "give a whole number" if "int" in str(field.annotation) else "give text"
+    if "int" in str(field.annotation):
+        return "give a whole number"
+    return f'give text such as "{field.examples[0]}"' if field.examples else "give text"

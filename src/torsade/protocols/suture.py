@@ -14,7 +14,7 @@ from pydantic import Field, field_validator, model_validator
 from torsade.errors import QuantityError, TorsadeError, quoted
 from torsade.protocols.base import Positive, Trial
 from torsade.protocols.pulled import COMMON, Experiment, Pulled, fixed_of, sizes_of
-from torsade.units import Angle, Force, Length, Number, Stiffness, Time, Velocity, Whole
+from torsade.units import Angle, Force, Length, Number, Stiffness, Time, Velocity, Whole, evenly
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -45,16 +45,21 @@ MOST_TURNS = 15
 
 
 def turns_of(throws: str) -> tuple[int, int]:
-    """Half turns of the throw tied first and of that on it.
+    """Half turns of the throw tied first and of that on it, from numbers or one of the names in `SIX`.
 
     Raises
     ------
     QuantityError
-        When the text is not two odd numbers up to 15, negative where left-handed.
+        When the text is neither two odd numbers up to 15, negative where left-handed, nor a name.
     """
+    by_name = {_plain(name): numbers for numbers, name in SIX.items()}
+    throws = by_name.get(_plain(throws), throws)
     found = re.fullmatch(r"\s*([+-]?\d{1,9})\s*,\s*([+-]?\d{1,9})\s*", throws.replace("−", "-"))
     if found is None:
-        raise QuantityError(f"{quoted(throws)} is not two numbers; give half turns such as 5,-3")
+        raise QuantityError(
+            f"{quoted(throws)} is not two numbers; give half turns such as 5,-3, with a comma, or a "
+            f"name: {', '.join(SIX.values())}"
+        )
     turns = int(found[1]), int(found[2])
     for n in turns:
         if n % 2 == 0:
@@ -64,6 +69,11 @@ def turns_of(throws: str) -> tuple[int, int]:
                 f"{quoted(throws)} has a throw of {abs(n)} half turns; give {MOST_TURNS} at most"
             )
     return turns
+
+
+def _plain(name: str) -> str:
+    """A name of a suture without case, genitive and the word knot."""
+    return re.sub(r"'?s\b|\bknot$", "", name.strip().lower().replace("’", "'")).strip()
 
 
 def tau_of(bottom: int, top: int) -> float:
@@ -90,7 +100,7 @@ class Suture(Pulled):
     protocol: Literal["suture"] = "suture"
     throws: str = Field(
         description="Pair of odd numbers, half turns of the throw tied first and of that on it, negative "
-        "where left-handed: 3,-3 is the reef knot, 3,3 the granny, 5,-3 the surgeon's knot.",
+        "where left-handed: 3,-3 is the reef knot, 3,3 the granny, 5,-3 the surgeon's knot; or such a name.",
         examples=["5,-3"],
     )
     material: str = Field(
@@ -174,11 +184,10 @@ class Suture(Pulled):
         import numpy as np
 
         if self.release == 0:
-            return np.linspace(0.0, self.duration, self.frames + 1)
+            return np.array(evenly(0.0, self.duration, self.frames))
         before = min(max(1, round(self.frames * self.duration / self.lasting)), self.frames - 1)
-        pulled = np.linspace(0.0, self.duration, before + 1)
-        let_go = np.linspace(self.duration, self.lasting, self.frames - before + 1)
-        return np.concatenate([pulled, let_go[1:]])
+        let_go = evenly(self.duration, self.lasting, self.frames - before)
+        return np.array([*evenly(0.0, self.duration, before), *let_go[1:]])
 
     @property
     def shape_name(self) -> str:

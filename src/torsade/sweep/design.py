@@ -24,6 +24,7 @@ from torsade.protocols import stored
 from torsade.protocols.files import beside, check_protocol, read_toml
 from torsade.protocols.sentences import dimension_of
 from torsade.sweep.axes import DESIGNS, MOST_VALUES, check_field, draws, values
+from torsade.units import said
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Spec
@@ -222,6 +223,9 @@ class Sweep:
             found.append(Point(number, key, spec))
         return found
 
+    def __repr__(self) -> str:
+        return f"<Sweep of {self.protocol} over {', '.join(self.varied) or 'nothing'}>"
+
     def told(self, varied: Mapping[str, Any]) -> str:
         """The values of fields that vary, in words."""
         return ", ".join(f"{name} = {_with_unit(self.spec, name, value)}" for name, value in varied.items())
@@ -273,4 +277,4 @@ def _check_once(names: Sequence[str]) -> None:
 
 def _with_unit(spec: type[Spec], name: str, value: Any) -> str:
     dimension = dimension_of(spec.model_fields[name])
-    return f"{quoted(value)} {dimension.unit}".strip() if dimension else quoted(value)
+    return said(value, dimension) if dimension and isinstance(value, float) else quoted(value)

@@ -21,6 +21,7 @@ from torsade.stopping import STOPPING, Patience
 from torsade.sweep import parts
 from torsade.sweep.design import MOST_POINTS, Point, Sweep
 from torsade.sweep.lanes import Lane, Local, Shared
+from torsade.sweep.processes import GRACE
 from torsade.sweep.query import ABOUT, POINTS, Catalogue, read_about
 from torsade.sweep.unit import Outcome, Unit
 from torsade.sweep.warm import warm_up
@@ -36,9 +37,6 @@ RESULTS = "results"
 
 FLUSH_EVERY = 3.0
 """Time between writes [s]: so much is computed again at most when this process is killed."""
-
-GRACE = 10.0
-"""How long runs may take to heed Ctrl-C [s]."""
 
 BUSY = (
     "another command runs the sweep in {out} ({owner}); wait for it or give another --out, or remove {lock} "

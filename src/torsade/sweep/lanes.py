@@ -2,95 +2,23 @@
 
 from __future__ import annotations
 
-import multiprocessing
-import os
-import signal
-import sys
-import threading
 import time
 from abc import ABC, abstractmethod
 from collections import deque
-from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager
-from multiprocessing import connection
-from multiprocessing.context import SpawnContext, SpawnProcess
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
 from typing import Any
 
-from torsade.sweep.unit import Unit, stop_when
+from torsade.sweep.processes import kill, pool
+from torsade.sweep.unit import Unit
 
-__all__ = ["Lane", "Local", "Shared", "deaf", "pool"]
-
-ONE_THREAD = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-"""Workers are as many as cores: each of them uses one."""
+__all__ = ["Lane", "Local", "Shared"]
 
 AHEAD = 2
 """Batches given to a worker at a time: it has the next when it ends one."""
 
 ASKED_EVERY = 5.0
 """Time between looks at how many workers there are [s]."""
-
-
-class _Process(SpawnProcess):
-    """A fresh interpreter with one thread for arrays, which does not import the main script once more."""
-
-    def start(self) -> None:
-        with _spared():
-            super().start()
-
-
-class _Context(SpawnContext):
-    Process = _Process
-
-
-@contextmanager
-def _spared() -> Iterator[None]:
-    """What a process that starts meanwhile gets from this one."""
-    main = sys.modules["__main__"]
-    names: dict[str, Any] = {
-        name: vars(main)[name] for name in ("__file__", "__spec__") if name in vars(main)
-    }
-    before = {name: os.environ.get(name) for name in ONE_THREAD}
-    try:
-        main.__spec__ = None
-        vars(main).pop("__file__", None)
-        os.environ.update(dict.fromkeys(ONE_THREAD, "1"))
-        yield
-    finally:
-        vars(main).update(names)
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
-
-
-def pool(workers: int, stop: Any = None) -> ProcessPoolExecutor:
-    """Processes that are spawned, not forked: forking one that has threads, as compiled kernels do, can hang.
-
-    They leave Ctrl-C to this one, end when it ends, however it does, and end their runs when `stop`, an event
-    of `multiprocessing`, is set.
-    """
-    return ProcessPoolExecutor(workers, _Context(), initializer=_begin, initargs=(stop,))
-
-
-def _begin(stop: Any) -> None:
-    deaf()
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
-    if stop is not None:
-        stop_when(stop.is_set)
-
-
-def deaf() -> None:
-    """Leave Ctrl-C to whoever waits for this process."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
-def _end_with(sentinel: int) -> None:
-    connection.wait([sentinel])
-    os._exit(1)
 
 
 class Lane(ABC):
@@ -153,9 +81,7 @@ class Local(Lane):
         return True
 
     def abandon(self) -> None:
-        # Before Python 3.14 there is no public way.
-        for process in list((getattr(self._pool, "_processes", None) or {}).values()):
-            process.kill()
+        kill(self._pool)
 
     def close(self) -> None:
         self._pool.shutdown(wait=False, cancel_futures=True)

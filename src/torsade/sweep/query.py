@@ -98,6 +98,9 @@ class Catalogue:
         fields = PROTOCOLS[self.protocol].model_fields
         self.varied = tuple(name for name in about["varied"] if name in fields)
 
+    def __repr__(self) -> str:
+        return f"<Catalogue of {self.protocol} in {str(self.folder)!r}>"
+
     def query(self, sql: str) -> Rows:
         """The answer to a query in DuckDB's SQL, which can read nothing else and write nothing.
 

@@ -99,8 +99,9 @@ def _client(where: Any) -> Any:
         raise TorsadeError(
             f"--scheduler needs dask, which is not installed; install it with {INSTALL}"
         ) from None
-    # Its tracebacks say less than the one sentence that follows.
-    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
+    # Their tracebacks say less than the one sentence that follows.
+    for name in ("distributed", "distributed.client", "tornado.application", "asyncio"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     make: Callable[..., Any] = Client
     try:
         return make(where, timeout=PATIENCE, set_as_default=False)

@@ -7,30 +7,24 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from torsade.errors import TorsadeError, reason_of
+from torsade.sweep.processes import heed
 
 if TYPE_CHECKING:
     from torsade.protocols.base import Progress, Spec
 
-__all__ = ["OTHER_VERSION", "Outcome", "Unit", "flat", "run_batch", "stop_when"]
+__all__ = ["OTHER_VERSION", "Outcome", "Unit", "flat", "run_batch"]
 
 OTHER_VERSION = "other sources"
 """Status of units that a worker with another version of the package was given."""
 
 _ONE_AT_A_TIME = threading.Lock()
 """Runs use one thread; a worker with several would let them share a core."""
-
-
-def _never() -> bool:
-    return False
-
-
-_stopped: Callable[[], bool] = _never
 
 
 class Unit(NamedTuple):
@@ -61,12 +55,6 @@ class Outcome(NamedTuple):
     versions: Mapping[str, str]
 
 
-def stop_when(asked: Callable[[], bool]) -> None:
-    """Let runs of this process end when this becomes true."""
-    global _stopped
-    _stopped = asked
-
-
 def run_batch(units: Sequence[Unit], sources: str, folder: str | None) -> list[Outcome]:
     """Run units one after another; those that are through when this process is asked to stop.
 
@@ -85,16 +73,11 @@ def run_batch(units: Sequence[Unit], sources: str, folder: str | None) -> list[O
     with _ONE_AT_A_TIME:
         try:
             for unit in units:
-                _heed(0.0, "")
+                heed(0.0, "")
                 done.append(_run(unit, folder))
         except KeyboardInterrupt:
             pass
     return done
-
-
-def _heed(share: float, note: str) -> None:
-    if _stopped():
-        raise KeyboardInterrupt
 
 
 def _run(unit: Unit, folder: str | None) -> Outcome:
@@ -102,7 +85,7 @@ def _run(unit: Unit, folder: str | None) -> Outcome:
     numbers: dict[str, Any] = {}
     status, reason = "done", None
     try:
-        numbers = flat(_reported(unit, folder, _heed), unit.spec.stored())
+        numbers = flat(_reported(unit, folder, heed), unit.spec.stored())
     except TorsadeError as error:
         status, reason = "failed", " ".join(str(error).split()).rstrip(".")
     except Exception as error:  # whatever one run stumbles over, the others go on

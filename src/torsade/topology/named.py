@@ -32,7 +32,7 @@ COMMON_NAMES = MappingProxyType(
 )
 """Words for some knots and links, with or without "knot", "link" or "rings" behind them."""
 
-_FACTOR = re.compile(r"m?(\d+[an]?_\d+|L\d+[an]\d+)")
+_FACTOR = re.compile(r"m?(\d+[an]?_\d+|K?\d+[an]\d+|L\d+[an]\d+)")
 
 
 def looks_like_a_name(text: str) -> bool:

@@ -14,7 +14,15 @@ if TYPE_CHECKING:
     from torsade.view.battery import draw_battery, plot_battery
     from torsade.view.cascade import along_rod, draw_pieces, pieces_at, plot_cascade
     from torsade.view.film import movie
-    from torsade.view.plots import plot_move, plot_separation, plot_swing, plot_tightening, plot_wound
+    from torsade.view.history import plot_result
+    from torsade.view.plots import (
+        plot_bent,
+        plot_move,
+        plot_separation,
+        plot_swing,
+        plot_tightening,
+        plot_wound,
+    )
     from torsade.view.scene import render, render_result
     from torsade.view.strands import strands_at
     from torsade.view.window import show
@@ -26,8 +34,10 @@ __all__ = [
     "movie",
     "pieces_at",
     "plot_battery",
+    "plot_bent",
     "plot_cascade",
     "plot_move",
+    "plot_result",
     "plot_separation",
     "plot_swing",
     "plot_tightening",
@@ -46,7 +56,9 @@ _HOMES = {
     "draw_pieces": "torsade.view.cascade",
     "movie": "torsade.view.film",
     "plot_cascade": "torsade.view.cascade",
+    "plot_bent": "torsade.view.plots",
     "plot_move": "torsade.view.plots",
+    "plot_result": "torsade.view.history",
     "plot_separation": "torsade.view.plots",
     "plot_swing": "torsade.view.plots",
     "plot_tightening": "torsade.view.plots",

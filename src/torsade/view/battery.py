@@ -161,11 +161,12 @@ class Shape(NamedTuple):
 def shapes(dataset: xarray.Dataset, shares: Sequence[float] = SHARES) -> Iterator[Shape]:
     """The charged fiber, and the fiber as soon as it has no more than each share of its energy left."""
     yield Shape.charging(dataset)
-    energy = _energy(dataset)
+    energy, seen = _energy(dataset), -1
     for share in shares:
         reached = np.flatnonzero(energy <= share * energy[0])
-        if len(reached):
-            yield Shape.discharging(dataset, int(reached[0]))
+        if len(reached) and reached[0] != seen:  # of few frames one may be the first below two shares
+            seen = int(reached[0])
+            yield Shape.discharging(dataset, seen)
 
 
 def top_density(dataset: xarray.Dataset) -> float:

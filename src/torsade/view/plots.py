@@ -269,6 +269,9 @@ def _title(axis: Any, dataset: xarray.Dataset) -> None:
     """Name of the knot and its topological friction, as far as they are known."""
     # A dollar sign would begin a formula.
     parts = [str(dataset.attrs["knot"]).replace("$", r"\$")] if dataset.attrs.get("knot") else []
+    if dataset.attrs.get("protocol") == "suture":
+        parts = [part.replace(",", ", ").replace("-", "\N{MINUS SIGN}") for part in parts]
+        parts = [f"({part})" for part in parts]
     friction = _number(dataset, "c_f")
     if friction is not None:
         parts.append(rf"$c_f$ = {friction:.3g}")

@@ -16,7 +16,15 @@ from torsade.view.tube import Mesh, tube
 if TYPE_CHECKING:
     import xarray
 
-__all__ = ["FROM_ABOVE", "Skin", "skin_at", "skin_colour", "skin_over_time"]
+__all__ = [
+    "COLOUR",
+    "FROM_ABOVE",
+    "Skin",
+    "skin_at",
+    "skin_colour",
+    "skin_meshes",
+    "skin_over_time",
+]
 
 Floats = NDArray[np.float64]
 
@@ -37,12 +45,12 @@ class Skin(NamedTuple):
     centres: Floats
     radius: float
 
-    def meshes(self, origin: Floats, unit: float) -> list[Mesh]:
-        """One mesh for each cylinder, in units [m] from an origin (3,) [m]."""
+    def meshes(self, origin: Floats, unit: float, sides: int = SIDES, rings: float = RINGS) -> list[Mesh]:
+        """One mesh for each cylinder, in units [m] from an origin (3,) [m]; rings are so many units apart."""
         along = np.array([[0.0, 0.0, -HALF_LENGTH], [0.0, 0.0, 0.0], [0.0, 0.0, HALF_LENGTH]])
         r = self.radius / unit
         return [
-            tube((centre - origin) / unit + along, r, sides=SIDES, spacing=RINGS / r, rounding=0.6 / r)
+            tube((centre - origin) / unit + along, r, sides=sides, spacing=rings / r, rounding=0.6 / r)
             for centre in self.centres
         ]
 
@@ -77,6 +85,24 @@ def skin_at(dataset: xarray.Dataset, frame: int) -> Skin | None:
     if "skin_position" not in dataset:
         return None
     return Skin(np.asarray(dataset["skin_position"][frame], np.float64), _radius(dataset))
+
+
+def skin_meshes(dataset: xarray.Dataset, frame: int, sides: int = SIDES, rings: float = RINGS) -> list[Mesh]:
+    """One mesh [m] for each cylinder in a stored frame of a result, none where there is no skin.
+
+    Parameters
+    ----------
+    sides : of each mesh, around it
+    rings : how far they are apart along it, at most, in radii of the fiber
+
+    Raises
+    ------
+    TorsadeError
+        When the result does not say how thick the skin is.
+    """
+    skin, radius = skin_at(dataset, frame), float(dataset.attrs["radius"])
+    bodies = [] if skin is None else skin.meshes(np.zeros(3), radius, sides, rings)
+    return [mesh._replace(vertices=radius * mesh.vertices) for mesh in bodies]
 
 
 def skin_over_time(dataset: xarray.Dataset) -> Callable[[float], Skin] | None:

@@ -16,7 +16,7 @@ from torsade.view.battery import draw_battery
 from torsade.view.camera import best_side, level_right
 from torsade.view.cascade import draw_pieces
 from torsade.view.scene import render_result
-from torsade.view.skin import FROM_ABOVE, skin_at, skin_colour
+from torsade.view.skin import FROM_ABOVE, skin_colour, skin_meshes
 from torsade.view.stage import OPACITY
 from torsade.view.strands import frame_index, strands_at, tubes_at
 from torsade.view.tube import Mesh
@@ -134,18 +134,12 @@ class Window:
         t = float(self._dataset["time"][frame])
         note = f"frame {frame} of {self._frames - 1}, t = {t:.4g} s" if self._frames > 1 else ""
         self._put("fibers", tubes_at(self._dataset, frame))
-        if bodies := self._skin(frame):
+        if bodies := skin_meshes(self._dataset, frame):
             # Of glass only the side toward the camera is drawn, so that it needs no sorting.
             self._put("skin", [(m, skin_colour(m)) for m in bodies], opacity=OPACITY, culling="back")
         self.plotter.add_text(
             note, position=(0.02, 0.95), viewport=True, font_size=11, color=INK, name="note"
         )
-
-    def _skin(self, frame: int) -> list[Mesh]:
-        """Cylinders of skin [m], none where there is no skin."""
-        skin, radius = skin_at(self._dataset, frame), float(self._dataset.attrs["radius"])
-        bodies = [] if skin is None else skin.meshes(np.zeros(3), radius)
-        return [mesh._replace(vertices=radius * mesh.vertices) for mesh in bodies]
 
     def _put(self, name: str, parts: Sequence[tuple[Mesh, Floats]], **options: Any) -> None:
         """Draw tubes, with sRGB colours (n, 3) of their vertices, in place of what had this name."""
@@ -169,7 +163,7 @@ class Window:
         radius = float(self._dataset.attrs["radius"])
         curves = [s.x / radius for s in strands_at(self._dataset, self.frame)]
         x = np.concatenate(curves)
-        bodies = self._skin(self.frame)
+        bodies = skin_meshes(self._dataset, self.frame)
         right, toward = np.eye(3)[[0, 2]]  # across the plane in which rods break
         if bodies:
             right, toward = level_right(FROM_ABOVE), FROM_ABOVE
