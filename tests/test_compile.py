@@ -77,14 +77,23 @@ def test_compilation_leaves_the_collector_as_it_was():
         assert False in seen
 
 
-def test_exact_kernels_round_products():
-    """x x less the rounded square is nothing, not what rounding took off."""
+def test_machine_code_is_made_of_entries_alone():
+    """What only kernels call is compiled into them, and leaves nothing but its place in the cache."""
 
-    def left(x, square):
-        return x * x - square
+    def inner(x):
+        return 2.0 * x
 
-    x = 1.0 + 2.0**-30
-    assert _compile.compiled(left, fastmath=False)(x, x * x) == 0.0
+    part = _compile.compiled(inner)
+
+    def outer(x):
+        return part(x) + 1.0
+
+    whole = _compile.compiled(outer)
+    assert whole(3.0) == 7.0
+    (compiled,) = part._inner.overloads.values()
+    assert isinstance(compiled.library, _compile._Part)
+    assert not list(compiled.library.get_defined_functions())
+    assert part(3.0) == 6.0
 
 
 def test_kernels_let_other_threads_go_on():

@@ -20,8 +20,9 @@ from pathlib import Path
 from typing import Any
 
 import numba
+from llvmlite import binding, ir
+from numba.core import codegen, compiler, event
 from numba.core import config as numba_config
-from numba.core import event
 
 # What Numba defines at run time, or leaves out of its annotations.
 config: Any = numba_config
@@ -96,6 +97,69 @@ class _QuickCompilation(event.Listener):
 register("numba:compile", _QuickCompilation())
 
 
+class _Once(event.Listener):
+    """Calls a function when a compilation begins, the first time."""
+
+    def __init__(self, call: Callable[[], object]) -> None:
+        self._call: Callable[[], object] | None = call
+
+    def on_start(self, event: event.Event) -> None:
+        call, self._call = self._call, None
+        if call is not None:
+            call()
+
+    def on_end(self, event: event.Event) -> None:
+        pass
+
+
+@contextmanager
+def when_compiling(call: Callable[[], object]) -> Iterator[None]:
+    """Call a function, once, if anything is compiled meanwhile; what comes from the cache does not count."""
+    with event.install_listener("numba:compile", _Once(call)):
+        yield
+
+
+class _Part(codegen.JITCodeLibrary):
+    """Code that becomes part of its callers'.
+
+    They are optimised as a whole, so here it is only tidied up, and no machine code is made of it: of every
+    function of a call tree that would be made, and optimised, once for each of its callers.
+    """
+
+    def _optimize_final_module(self) -> None:
+        level, config.OPT = config.OPT, type(config.OPT)(0)
+        try:
+            super()._optimize_final_module()
+        finally:
+            config.OPT = level
+
+    def _finalize_final_module(self) -> None:
+        self._finalized = True
+        self._shared_module = self._get_module_for_linking()
+        self._final_module: Any = _places(self._final_module)
+        super()._finalize_final_module()
+
+
+def _places(module: Any) -> Any:
+    """A module with no more than the places in which Numba leaves the environments of another's functions."""
+    places = ir.Module(module.name)
+    places.triple = module.triple
+    for place in module.global_variables:
+        if place.linkage == binding.Linkage.common:
+            held = ir.GlobalVariable(places, ir.IntType(8).as_pointer(), place.name)
+            held.linkage, held.initializer = "common", ir.Constant(held.value_type, None)
+    return binding.parse_assembly(str(places))
+
+
+class _PartCompiler(compiler.Compiler):
+    """Compiles functions for other kernels to call."""
+
+    def compile_extra(self, func: Callable[..., Any]) -> Any:
+        self.state.library = _Part(self.state.targetctx.codegen(), func.__qualname__)
+        self.state.library.enable_object_caching()
+        return super().compile_extra(func)
+
+
 class Kernel:
     """A compiled function of a kernel module.
 
@@ -110,7 +174,9 @@ class Kernel:
         self.py_func = function
         self._options = options
         with _caching("kernels"):
-            self._inner = njit(no_cpython_wrapper=True, _nrt=counting, **options)(function)
+            self._inner = njit(
+                no_cpython_wrapper=True, _nrt=counting, pipeline_class=_PartCompiler, **options
+            )(function)
         self.targetoptions = self._inner.targetoptions
         self._entry: Callable[..., Any] | None = None
 
@@ -147,7 +213,6 @@ def compile_kernels(
     splice: tuple[str, ...] = (),
     owning: tuple[str, ...] = (),
     plain: tuple[str, ...] = (),
-    exact: tuple[str, ...] = (),
 ) -> None:
     """Compile every function that the module defines, in place; those named plain stay as they are.
 
@@ -156,9 +221,8 @@ def compile_kernels(
     become part of their caller before compilation, which spares compiling all they call once more.
     Functions named under owning make arrays, or are given new ones by what they call, and count references
     to arrays; the others only borrow, and save the atomic operations (the compiler refuses a function that
-    makes arrays and is not named). Those named under exact round after every operation, as numpy does; in
-    others a product and a sum may round once. With ``NUMBA_DISABLE_JIT=1`` all functions stay plain Python
-    and can be stepped through.
+    makes arrays and is not named). A product and a sum may round once. With ``NUMBA_DISABLE_JIT=1`` all
+    functions stay plain Python and can be stepped through.
     """
     if config.DISABLE_JIT:
         return
@@ -171,8 +235,6 @@ def compile_kernels(
                 options["forceinline"] = True
             if name in splice:
                 options["inline"] = "always"
-            if name in exact:
-                options["fastmath"] = False
             setattr(module, name, compiled(function, name in owning, **options))
 
 

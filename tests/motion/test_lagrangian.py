@@ -1,29 +1,23 @@
-"""What kernels do in place of numpy gives the same bits; coordinates and changes of edges belong together."""
+"""Coordinates and changes of edges belong together; Newton's method says when it finds nothing."""
 
 from __future__ import annotations
-
-import math
 
 import numpy as np
 import pytest
 
 from motion.still import PIVOT, arch, waving
-from torsade.motion import lagrangian, newton_kernels
+from torsade.motion import lagrangian
 from torsade.motion.branches import Path
 from torsade.motion.chain import Chain
+from torsade.motion.newton_kernels import Tangent, Way, newton
 from torsade.motion.supports import Fiber, Support, chain, controls_at
+from torsade.motion.trust import as_modes, minimise, upwards
 
 CHAINS = (
     chain(Fiber(edges=30), (PIVOT, PIVOT)),
     chain(Fiber(edges=30), (PIVOT, PIVOT), rotation_held=True),
     chain(Fiber(edges=12, EA=50.0, C=0.7), (PIVOT, Support("fixed")), angles=True),
 )
-
-
-@pytest.mark.parametrize("n", [0, 1, 7, 8, 9, 50, 127, 128, 129, 300, 1001])
-def test_sums_are_those_of_numpy(n: int) -> None:
-    values = np.random.default_rng(n).normal(size=n)
-    assert lagrangian.total(values) == values.sum()
 
 
 @pytest.mark.parametrize("c", CHAINS)
@@ -43,7 +37,7 @@ def test_coordinates_are_those_of_numpy(c: Chain) -> None:
     assert system.lift(q) == pytest.approx(lifted, rel=1e-14, abs=1e-15)
     size = np.maximum(np.einsum("ecd,ecd->ed", basis, basis), 1e-300)
     lowered = (np.einsum("ecd,ec->ed", basis, change) / size).ravel()
-    assert np.array_equal(lagrangian.lower(basis, change), lowered)
+    assert lagrangian.lower(basis, change) == pytest.approx(lowered, rel=1e-13, abs=1e-15)
 
 
 @pytest.mark.parametrize("c", CHAINS)
@@ -58,16 +52,27 @@ def test_rates_of_residuals_and_gaps(c: Chain) -> None:
     assert gap == pytest.approx(after.gap - before.gap, abs=1e-13)
 
 
-def test_hypotenuses_are_those_of_python() -> None:
-    pairs = np.random.default_rng(5).lognormal(0.0, 3.0, size=(20_000, 2))
-    assert newton_kernels.hypotenuse(3.0, 4.0) == 5.0
-    assert all(newton_kernels.hypotenuse(a, b) == math.hypot(a, b) for a, b in pairs.tolist())
-
-
 def test_no_point_is_found_where_numbers_are_none() -> None:
     c = CHAINS[0]
     shape, path = arch(c, 1.0), Path(controls_at(c, (0.7, 0.0, 0.0)), controls_at(c, (0.5, 0.0, 0.0)))
-    still = newton_kernels.Tangent(np.full((len(shape.edge), 4), np.nan), np.zeros(c.held), 1.0)
-    assert newton_kernels.correct(c, path.start, path.rate, 1.0, 1.0, shape, 0.0, still, 0.1)[0] == -1
-    lost = path.start._replace(value=np.full(3, np.nan))
-    assert not newton_kernels.newton(c, shape, lost, 12, np.empty((0, len(shape.edge), 4)))[0]
+    nowhere = Tangent(np.full((len(shape.edge), 4), np.nan), np.zeros(c.held), 1.0)
+    way = Way(path.start, path.rate, 1.0, free=True, onwards=True)
+    assert newton(c, way, shape, 0.0, nowhere, 0.1, as_modes((), c), 9)[0] == -1
+    lost = Way(path.start._replace(value=np.full(3, np.nan)), path.rate, 1.0, free=False, onwards=False)
+    assert newton(c, lost, shape, 0.0, upwards(c), 0.0, as_modes((), c), 12)[0] == -1
+
+
+def test_directions_are_those_of_differences() -> None:
+    """Two points on a branch differ by the step along its direction, to first order."""
+    c, step = CHAINS[0], 1e-4
+    path = Path(controls_at(c, (0.7, 0.0, 0.0)), controls_at(c, (0.5, 0.0, 0.0)))
+    way = Way(path.start, path.rate, path.size(c), free=False, onwards=True)
+    shape = minimise(c, arch(c, 1.0), path.start)
+    found, _, before, _, along = newton(c, way, shape, 0.0, upwards(c), 0.0, as_modes((), c), 12)
+    other = way._replace(free=True)
+    corrections, p, after, _, _ = newton(c, other, before, 0.0, along, step, as_modes((), c), 9)
+    assert found >= 0
+    assert 0 <= corrections <= 2
+    assert p == pytest.approx(step * along.p, rel=1e-3)
+    assert after.edge - before.edge == pytest.approx(step * along.change[:, :3], abs=10 * step**2)
+    assert after.reaction - before.reaction == pytest.approx(step * along.multipliers, rel=1e-2)

@@ -333,12 +333,26 @@ def test_frames_are_on_disk_under_the_name_that_others_look_for(
     assert min(seen) >= 3
 
 
-def test_without_a_cache_it_is_not_said_that_compiling_is_done_once(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    ("kept", "words"),
+    [
+        (True, "compiling the kernels, this once (up to a minute)"),
+        (False, "compiling the kernels (up to a minute); set TORSADE_CACHE_DIR to a folder to keep them in"),
+    ],
+)
+def test_compiling_is_told_once_whatever_it_is_for(
+    kept: bool, words: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Fibers are made by kernels too; where nothing can be kept it is not said that it is done once."""
     from torsade import _compile
 
-    monkeypatch.setattr(_compile, "CACHE", None)
+    class Slow(type(SPEC)):
+        def trial(self):
+            for factor in (2.0, 3.0):
+                _compile.compiled(lambda x, factor=factor: factor * x, cache=False)(1.0)
+            return super().trial()
+
+    monkeypatch.setattr(_compile, "CACHE", tmp_path if kept else None)
     said = []
-    SPEC.run(lambda share, note: said.append(note))
-    assert said[0] == (
-        "compiling the kernels (up to a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
-    )
+    Slow(**SPEC.model_dump(exclude_unset=True)).run(lambda share, note: said.append(note))
+    assert said[:2] == [words, "getting ready"]

@@ -22,9 +22,9 @@ from torsade.arrays import Floats
 from torsade.motion import newton_kernels
 from torsade.motion.chain import Chain, Controls, Shape, System
 from torsade.motion.lagrangian import towards
-from torsade.motion.newton_kernels import MOST_STEPS, Tangent
+from torsade.motion.newton_kernels import MOST_CORRECTIONS, MOST_STEPS, Tangent, Way
 from torsade.motion.spectrum import lowest, unstable_modes
-from torsade.motion.trust import newton
+from torsade.motion.trust import as_modes, newton, upwards
 
 __all__ = ["Path", "Point", "bifurcation", "carry", "fold", "follow", "switch"]
 
@@ -112,7 +112,7 @@ def follow(
     The last point has p = 1 exactly if the path's end was reached. `first` and `largest` are steps, `tangent`
     the direction to set out in, towards greater p unless given.
     """
-    begun = _at(chain, shape, path, p, tangent)
+    begun = _met(chain, path, shape, p, tangent or upwards(chain))
     if begun is None:
         return
     now, length = begun, first
@@ -154,18 +154,15 @@ def carry(chain: Chain, shape: Shape, path: Path) -> Shape | None:
     turn, change = LONGEST_AT_ONCE
     if path.size(chain) > change:
         return None
-    begun = _at(chain, shape, path, 0.0, None)
+    begun = _met(chain, path, shape, 0.0, upwards(chain))
     if begun is None or begun.tangent.p <= 0.0:
         return None
     whole = 1.0 / begun.tangent.p
-    k, tangent = len(chain.weight), begun.tangent
-    angle = whole * float(np.linalg.norm(tangent.change[:, :3])) / math.sqrt(len(shape.edge))
+    angle = whole * float(np.linalg.norm(begun.tangent.change[:, :3])) / math.sqrt(len(shape.edge))
     if angle > turn * float(np.linalg.norm(shape.edge, axis=1).max()):
         return None
-    moved = chain.moved(begun.shape, whole * tangent.change)
-    reaction = moved.reaction + whole * tangent.multipliers[:k]
-    found = newton(chain, moved._replace(reaction=reaction), path.at(1.0))
-    return None if found is None else found[0]
+    found = _found(chain, path, begun.shape, 1.0, begun.tangent, whole)
+    return None if found is None else found[0].shape
 
 
 def bifurcation(chain: Chain, path: Path, before: Point, after: Point) -> tuple[Point, Floats] | None:
@@ -216,31 +213,38 @@ def _distance(chain: Chain, path: Path, before: Point, after: Point) -> float:
     return math.hypot(turned, path.size(chain) * (after.p - before.p))
 
 
-def _at(chain: Chain, shape: Shape, path: Path, p: float, tangent: Tangent | None) -> Point | None:
-    """The point of a branch at which a path is begun."""
-    upwards = tangent or Tangent(np.zeros((len(shape.edge), 4)), np.zeros(chain.held), 1.0)
-    return _arrived(chain, shape, path, p, upwards)
-
-
-def _arrived(chain: Chain, shape: Shape, path: Path, p: float, along: Tangent) -> Point | None:
+def _met(chain: Chain, path: Path, shape: Shape, p: float, along: Tangent) -> Point | None:
     """The point next to a shape at share p, where the branch goes on along a direction."""
-    size = path.size(chain)
-    found, end, system, tangent = newton_kernels.arrive(
-        chain, shape, path.start, path.rate, size, size**2, p, along, MOST_STEPS
-    )
-    return Point(chain, p, end, system, tangent) if found else None
+    found = _found(chain, path, shape, p, along, onwards=True)
+    return None if found is None else found[0]
 
 
 def _correct(chain: Chain, path: Path, now: Point, along: Tangent, length: float) -> tuple[Point, int] | None:
     """Newton's method in the plane across a direction, a length away from a point."""
-    size = path.size(chain)
-    corrections, p, shape, system, tangent = newton_kernels.correct(
-        chain, path.start, path.rate, size, size**2, now.shape, now.p, along, length
-    )
-    return None if corrections < 0 else (Point(chain, p, shape, system, tangent), corrections)
+    return _found(chain, path, now.shape, now.p, along, length, free=True, onwards=True)
 
 
 def _land(chain: Chain, path: Path, before: Point, after: Point) -> Point | None:
     """The point at p = 1 between two others."""
     near = before if 1.0 - before.p < after.p - 1.0 else after
-    return _arrived(chain, near.shape, path, 1.0, before.tangent)
+    return _met(chain, path, near.shape, 1.0, before.tangent)
+
+
+def _found(
+    chain: Chain,
+    path: Path,
+    shape: Shape,
+    p: float,
+    along: Tangent,
+    length: float = 0.0,
+    *,
+    free: bool = False,
+    onwards: bool = False,
+) -> tuple[Point, int] | None:
+    """The point that Newton's method finds, and how many corrections it took; see `newton_kernels`."""
+    way = Way(path.start, path.rate, path.size(chain), free, onwards)
+    most = MOST_CORRECTIONS + 1 if free else MOST_STEPS
+    corrections, p, shape, system, tangent = newton_kernels.newton(
+        chain, way, shape, float(p), along, float(length), as_modes((), chain), most
+    )
+    return None if corrections < 0 else (Point(chain, p, shape, system, tangent), corrections)

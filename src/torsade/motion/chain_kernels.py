@@ -120,7 +120,7 @@ def derivatives(
     _span(rules, length, tangent, out.basis)
     _curve(B, rules, edge, gradient, out.basis, extra)
     reduce_blocks(own, beside, out.basis, extra, out.band)
-    _project(gradient, out.basis, out.residual)
+    project(gradient, out.basis, out.residual)
     _hold(rules.weight, edge, out.basis, out.gap, out.border)
     if rotation != NOTHING:
         if rotation == HINGES:
@@ -128,7 +128,7 @@ def derivatives(
         else:
             gradient[:] = 0.0
             gradient[n - 1, 3] = -1.0
-        _project(gradient, out.basis, out.border[:, k])
+        project(gradient, out.basis, out.border[:, k])
 
 
 def _span(rules: Rules, length: Floats, tangent: Floats, basis: Floats) -> None:
@@ -143,8 +143,10 @@ def _span(rules: Rules, length: Floats, tangent: Floats, basis: Floats) -> None:
         if freedom == PLANE:
             _cross(rules.normal[e], tangent[e], first)
         else:
-            axis[:] = 0.0
-            axis[np.abs(tangent[e]).argmin()] = 1.0
+            x, y, z = abs(tangent[e, 0]), abs(tangent[e, 1]), abs(tangent[e, 2])
+            axis[0] = 1.0 if x <= y and x <= z else 0.0
+            axis[1] = 1.0 if y < x and y <= z else 0.0
+            axis[2] = 1.0 if z < x and z < y else 0.0
             _cross(axis, tangent[e], first)
             size = math.sqrt(_dot(first, first))
             for c in range(3):
@@ -173,7 +175,7 @@ def _curve(B: float, rules: Rules, edge: Floats, gradient: Floats, basis: Floats
             extra[e, i] = B / mass**2 if still else curved if i < turns else 0.0
 
 
-def _project(gradient: Floats, basis: Floats, out: Floats) -> None:
+def project(gradient: Floats, basis: Floats, out: Floats) -> None:
     """A gradient (n, 4) by the coordinates (n d,) of edges."""
     n, _, d = basis.shape
     for e in range(n):

@@ -196,7 +196,7 @@ def bent(
             if shape.edge[0, 1] * near.shape.edge[0, 1] > 0.0:
                 return _measured(fiber, problem, shape, wanted)
     begin = given(d, 0.0, 0.0)
-    shape = minimise(problem, _arch(problem, d), begin)
+    shape = _planar(problem, d, begin)
     return _measured(fiber, problem, _followed(problem, shape, Path(begin, wanted)), wanted)
 
 
@@ -283,6 +283,15 @@ def _arch(problem: Chain, d: float) -> Shape:
     s = np.clip(problem.assembly.edge_arclength, 0.0, 1.0)
     angle = float(brentq(lambda a: j0(a) - d, 0.0, 3.8)) * np.cos(math.pi * s)
     return shape_along(problem, np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle]))
+
+
+def _planar(problem: Chain, d: float, controls: Controls) -> Shape:
+    """The stable arch over the distance d, without twist."""
+    near = _arch(problem, d)
+    found = newton(problem, near, controls)
+    if found is not None and unstable_modes(problem, found[1]) == 0:
+        return found[0]
+    return minimise(problem, near, controls)
 
 
 def _followed(problem: Chain, shape: Shape, path: Path) -> Shape:

@@ -295,8 +295,8 @@ def _material_rates(
             e, i = np.uintp(edge + k), np.uintp(node + k)
             angular[e] = _material_rate(t0, t, length, v, omega, e, i, i + ONE)
         if edge_start[f + 1] - edge == n:
-            last = edge + n - 1
-            angular[last] = _material_rate(t0, t, length, v, omega, last, node + n - 1, node)
+            e, i = np.uintp(edge + n - 1), np.uintp(node + n - 1)
+            angular[e] = _material_rate(t0, t, length, v, omega, e, i, np.uintp(node))
 
 
 def _material_rate(

@@ -28,6 +28,7 @@ START = np.int64(0)
 SPECTRUM = np.int64(1)
 STEP = np.int64(2)
 ONE_STAGE = np.int64(1)
+ANEW = np.bool_(False)
 """Not literals: a kernel would be compiled again for every literal that it is called with."""
 
 
@@ -278,7 +279,7 @@ def _prepare(job: Index, dt: float, stages: Index, state: State, g: Stages) -> N
 
 def evaluate(
     job: Index,
-    resumed: bool,
+    resumed: bool | np.bool_,
     a: Assembly,
     m: Model,
     bc: Boundary,

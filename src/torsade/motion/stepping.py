@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from torsade._compile import compile_kernels
 from torsade.arrays import Floats, Index, Ints
 from torsade.assembly import Assembly, State
@@ -13,6 +15,7 @@ from torsade.motion.near import Near, crossing, find_near, list_near
 from torsade.motion.piercing import pierced
 from torsade.motion.rates import DENSE, LOOSE, OK, STALE
 from torsade.motion.scheme import (
+    ANEW,
     ONE_STAGE,
     SPECTRUM,
     START,
@@ -173,7 +176,8 @@ def _evaluate(
     g: Stages,
 ) -> tuple[int, Factor | tuple[()]]:
     """Do a job, with a new factor whenever the old one will not do; its status, and the factor."""
-    status, resumed = STALE, False
+    status: int = STALE
+    resumed: bool | np.bool_ = ANEW
     while status == STALE:
         status = evaluate(job, resumed, a, m, bc, state, near.contacts, factor, control, dt, stages, g)
         resumed = status == STALE

@@ -19,7 +19,7 @@ from torsade.errors import TorsadeError
 from torsade.motion import newton_kernels
 from torsade.motion.bordered import Bordered
 from torsade.motion.chain import Chain, Controls, Shape, System
-from torsade.motion.newton_kernels import LARGEST_RADIUS, MOST_STEPS
+from torsade.motion.newton_kernels import LARGEST_RADIUS, MOST_STEPS, Tangent, Way
 
 __all__ = ["minimise", "newton"]
 
@@ -36,9 +36,23 @@ def newton(
     still are motions (n_edges, 4) that the way there does without: next to a bifurcation the modes of another
     branch, onto which an all but singular system would lead.
     """
-    modes = np.reshape(np.asarray(still, dtype=np.float64), (len(still), len(shape.edge), 4))
-    found, end, here = newton_kernels.newton(chain, shape, controls, most, np.ascontiguousarray(modes))
-    return (end, here) if found else None
+    unchanged = Controls(np.zeros_like(controls.value), np.zeros_like(controls.load), 0.0, 0.0)
+    way, unmoved = Way(controls, unchanged, 1.0, free=False, onwards=False), upwards(chain)
+    found, _, end, here, _ = newton_kernels.newton(
+        chain, way, shape, 0.0, unmoved, 0.0, as_modes(still, chain), most
+    )
+    return (end, here) if found >= 0 else None
+
+
+def upwards(chain: Chain) -> Tangent:
+    """The direction of a path on which nothing moves yet."""
+    return Tangent(np.zeros((len(chain.mass), 4)), np.zeros(chain.held), 1.0)
+
+
+def as_modes(still: Sequence[Floats] | Floats, chain: Chain) -> Floats:
+    """Motions as one array (m, n_edges, 4)."""
+    shaped = np.reshape(np.asarray(still, dtype=np.float64), (len(still), len(chain.mass), 4))
+    return np.ascontiguousarray(shaped)
 
 
 def minimise(chain: Chain, shape: Shape, controls: Controls, most: int = 200) -> Shape:
@@ -49,7 +63,7 @@ def minimise(chain: Chain, shape: Shape, controls: Controls, most: int = 200) ->
     TorsadeError
         When no equilibrium is found within so many steps.
     """
-    shape = newton_kernels.given(chain, shape, controls)
+    shape = shape if chain.rotation_held else shape._replace(torque=controls.torque)
     radius, shift, before = 0.3 * LARGEST_RADIUS, 0.0, math.inf
     for _ in range(most):
         system = chain.system(shape, controls)

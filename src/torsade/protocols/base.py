@@ -29,10 +29,12 @@ if TYPE_CHECKING:
     from torsade.motion.moving import Motion, Outcome
     from torsade.results import Result
 
-__all__ = ["Driven", "Positive", "Progress", "Spec", "Trial"]
+__all__ = ["SILENT", "Driven", "Positive", "Progress", "Spec", "Trial"]
 
 Progress = Callable[[float, str], None]
 """Called with the share done, from 0 to 1, and what is going on."""
+
+SILENT: Progress = lambda share, note: None  # noqa: E731
 
 Positive = Field(gt=0)
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 from pydantic import Field, field_validator, model_validator
 
 from torsade.errors import TorsadeError
-from torsade.protocols.base import Driven, Positive, Progress, Trial
+from torsade.protocols.base import SILENT, Driven, Positive, Progress, Trial
 from torsade.units import Number, Time, Viscosity, Whole
 
 if TYPE_CHECKING:
@@ -54,8 +54,6 @@ FIRST_FRAME, FIRST_SAMPLE = 1e-3, 1e-4
 
 SAMPLES = 240
 """Evenly spaced in the logarithm of time."""
-
-SILENT: Progress = lambda share, note: None  # noqa: E731
 
 
 def even_twist_energy(twist: float, nu: float) -> float:
@@ -280,12 +278,12 @@ class Battery(Driven):
 
         from torsade.protocols.battery_numbers import Units, concluded
         from torsade.protocols.discharge import NAMES, SAMPLED, Discharge, hinge_at, hinge_to_cut
-        from torsade.protocols.driving import preparation
+        from torsade.protocols.driving import READY
         from torsade.protocols.shapes import check_count, check_frames
 
         check_count(self.node_count)
         check_frames(self.frames + 1, self.node_count + 1)
-        tell(0.0, preparation())
+        tell(0.0, READY)
         closed, charge = self.charged(tell)
         a = closed.assembly
         if self.cut_at is None:

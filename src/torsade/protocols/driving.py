@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from contextlib import suppress
+from contextlib import AbstractContextManager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,7 +24,10 @@ from torsade.variables import SAMPLE
 if TYPE_CHECKING:
     from torsade.protocols.base import Driven, Progress, Trial
 
-__all__ = ["Interrupted", "drive", "preparation"]
+__all__ = ["Interrupted", "compilation_told", "drive", "preparation"]
+
+READY = "getting ready"
+"""What is said before the first step."""
 
 SAMPLE_EVERY = 0.01
 """Greatest time between samples [s]."""
@@ -39,7 +42,8 @@ def drive(
     """Run a specification; see `Driven.run`."""
     tell = progress or (lambda share, note: None)
     try:
-        trial = spec.prepared(tell)
+        with compilation_told(tell):
+            trial = spec.prepared(tell)
     except KeyboardInterrupt as stopped:
         raise Interrupted(0.0, 0, None, earlier=_begun(out), when=str(stopped)) from None
     motion = trial.motion
@@ -47,8 +51,9 @@ def drive(
     try:
         if recording.complete:
             return recording.result()
-        tell(0.0, preparation())
-        motion.warm_up()
+        tell(0.0, READY)
+        with compilation_told(tell):
+            motion.warm_up()
         if recording.saved is not None:
             recording.recover(motion)
         clock = _Clock(spec.lasting, motion, tell)
@@ -99,11 +104,21 @@ def _begin(spec: Driven, trial: Trial, out: str | Path | None, resume: bool, ove
 
 
 def preparation() -> str:
-    """What there is to do before the first step."""
+    """What there is to do before the first step, as far as can be seen from what was kept."""
+    kept = _compile.CACHE is not None and any(_compile.CACHE.rglob("*.nbc"))
+    return READY if kept else _compilation()
+
+
+def compilation_told(tell: Progress) -> AbstractContextManager[None]:
+    """Whatever is done meanwhile, tell when kernels are compiled for it."""
+    return _compile.when_compiling(lambda: tell(0.0, _compilation()))
+
+
+def _compilation() -> str:
+    """What is said when kernels are compiled."""
     if _compile.CACHE is None:
         return "compiling the kernels (up to a minute); set TORSADE_CACHE_DIR to a folder to keep them in"
-    kept = any(_compile.CACHE.rglob("*.nbc"))
-    return "getting ready" if kept else "compiling the kernels, this once (up to a minute)"
+    return "compiling the kernels, this once (up to a minute)"
 
 
 class _Clock:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from torsade.protocols.base import Progress, Spec
+from torsade.protocols.base import SILENT, Progress, Spec
 
 if TYPE_CHECKING:
     from torsade.arrays import Floats
@@ -73,16 +73,17 @@ class Still(Spec):
             On Ctrl-C or SIGTERM.
         """
         from torsade import places
-        from torsade.protocols.driving import Interrupted, preparation
+        from torsade.protocols.driving import READY, Interrupted, compilation_told
         from torsade.recording import Recording
 
         if out is not None and not resume:
             places.check_target(out, overwrite)  # before there is something to be lost
         began = time.perf_counter()
         try:
-            if progress is not None:
-                progress(0.0, preparation())
-            found = self.solve()
+            tell = progress or SILENT
+            tell(0.0, READY)
+            with compilation_told(tell):
+                found = self.solve()
         except KeyboardInterrupt:
             raise Interrupted(0.0, 0, None) from None
         a = found.assembly

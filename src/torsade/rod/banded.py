@@ -112,10 +112,18 @@ def condense(
     right, left, corner = border
     inner, schur = reduced
     negative = factorise(band, shift, factor)
-    inner[:] = right
+    n, k = right.shape
+    for i in range(n):
+        for j in range(k):
+            inner[i, j] = right[i, j]
     solve(factor, inner)
-    if len(corner):
-        schur[:] = corner - np.dot(left.T, inner)
+    for j in range(k):
+        for m in range(k):
+            schur[j, m] = corner[j, m]
+    for i in range(n):
+        for j in range(k):
+            for m in range(k):
+                schur[j, m] -= left[i, j] * inner[i, m]
     return negative
 
 
@@ -137,12 +145,13 @@ def solve_bordered(
     right, left, corner = border
     inner, schur = reduced
     n, k = right.shape
-    x, ds = r.reshape(n, 1).copy(), s.copy()
-    regular = _solve_once(factor, left, inner, schur, x, ds)
+    x, ds = np.zeros((n, 1)), np.zeros(k)
     rest, below, product = np.empty((n, 1)), np.empty(k), np.empty((n, 1))
-    for _ in range(refinements):
+    regular = True
+    for _ in range(refinements + 1):
         multiply(band, x, product)
-        below[:] = s
+        for j in range(k):
+            below[j] = s[j]
         for i in range(n):
             rest[i, 0] = r[i] - product[i, 0] - shift * x[i, 0]
             for j in range(k):
@@ -151,12 +160,12 @@ def solve_bordered(
         for j in range(k):
             for m in range(k):
                 below[j] -= corner[j, m] * ds[m]
-        _solve_once(factor, left, inner, schur, rest, below)
+        regular = _solve_once(factor, left, inner, schur, rest, below)
         for i in range(n):
             x[i, 0] += rest[i, 0]
         for j in range(k):
             ds[j] += below[j]
-    return x[:, 0].copy(), ds, regular
+    return x.reshape(n), ds, regular
 
 
 def _solve_once(factor: Floats, left: Floats, inner: Floats, schur: Floats, x: Floats, ds: Floats) -> bool:
@@ -180,7 +189,10 @@ def _solve_dense(matrix: Floats, x: Floats) -> bool:
     """
     k = len(x)
     for c in range(k):
-        top = c + np.abs(matrix[c:, c]).argmax()
+        top = c
+        for row in range(c + 1, k):
+            if abs(matrix[row, c]) > abs(matrix[top, c]):
+                top = row
         if matrix[top, c] == 0.0:
             return False
         for m in range(k):
@@ -198,4 +210,8 @@ def _solve_dense(matrix: Floats, x: Floats) -> bool:
     return True
 
 
-compile_kernels(__name__, owning=("condense", "solve_bordered", "_solve_once", "_solve_dense"))
+compile_kernels(
+    __name__,
+    splice=("_solve_once", "_solve_dense"),
+    owning=("solve_bordered", "_solve_once", "_solve_dense"),
+)

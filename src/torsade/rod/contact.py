@@ -142,7 +142,8 @@ def contact_energy(a: Assembly, m: Model, length: Floats, tangent: Floats, conta
     total = 0.0
     for k in range(contacts.count[0]):
         p = 1.0 - distance[k] / m.diameter
-        area = _area(m.projected, edges[k, 0], edges[k, 1], rest_length, length, tangent)
+        e, f = np.uintp(edges[k, 0]), np.uintp(edges[k, 1])
+        area = _area(m.projected, e, f, rest_length, length, tangent)
         total += m.diameter * m.K * area * contact_potential(m, p)
     return total
 
@@ -186,7 +187,8 @@ def compression(a: Assembly, m: Model, length: Floats, tangent: Floats, contacts
     rest_length, edges, distance = a.rest_length, contacts.edges, contacts.distance
     total = 0.0
     for k in range(contacts.count[0]):
-        area = _area(m.projected, edges[k, 0], edges[k, 1], rest_length, length, tangent)
+        e, f = np.uintp(edges[k, 0]), np.uintp(edges[k, 1])
+        area = _area(m.projected, e, f, rest_length, length, tangent)
         total += 2.0 * area * contact_pressure(m, distance[k])
     return total
 

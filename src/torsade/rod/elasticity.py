@@ -126,13 +126,14 @@ def _edge_forces(
         stretch = EA * (length[e] / rest_length[e] - 1.0) - ease_p - ease_q
         _set_edge_force(stretch, length, t, e, e - ONE, bend_p, turn_p, e + ONE, bend_q, turn_q, g)
     for k in range(0, n, max(1, n - 1)):
-        e = first + k
-        p, q = first + (k - 1 + n) % n, first + (k + 1) % n
+        e = np.uintp(first + k)
+        p, q = np.uintp(first + (k - 1 + n) % n), np.uintp(first + (k + 1) % n)
         bend_p, turn_p, ease_p, bend_q, turn_q, ease_q = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         if ring or k > 0:
-            bend_p, turn_p, ease_p = _joint(B, C, present, length, t, m, lbar, p, e, before + k)
+            b = np.uintp(before + k)
+            bend_p, turn_p, ease_p = _joint(B, C, present, length, t, m, lbar, p, e, b)
         if ring or k < n - 1:
-            b = h + (before - h + k + 1) % joints
+            b = np.uintp(h + (before - h + k + 1) % joints)
             bend_q, turn_q, ease_q = _joint(B, C, present, length, t, m, lbar, e, q, b)
         stretch = EA * (length[e] / rest_length[e] - 1.0) - ease_p - ease_q
         _set_edge_force(stretch, length, t, e, p, bend_p, turn_p, q, bend_q, turn_q, g)

@@ -26,7 +26,8 @@ def edge_geometry(a: Assembly, x: Floats, length: Floats, tangent: Floats) -> No
             i = np.uintp(node + k)
             _measure_edge(x, i, i + ONE, np.uintp(edge + k), length, tangent)
         if edge_start[f + 1] - edge == n:
-            _measure_edge(x, node + n - 1, node, edge + n - 1, length, tangent)
+            i = np.uintp(node + n - 1)
+            _measure_edge(x, i, np.uintp(node), np.uintp(edge + n - 1), length, tangent)
 
 
 def _measure_edge(x: Floats, i: Index, j: Index, e: Index, length: Floats, tangent: Floats) -> None:
@@ -90,7 +91,7 @@ def reference_twist_change(a: Assembly, tangent_0: Floats, tangent: Floats, chan
             change[hinge - 1] = math.nan
     for k in range(change.shape[0]):
         if change[k] != change[k]:
-            y, x = _swept(tangent_0, tangent, hinges[k, 0], hinges[k, 1])
+            y, x = _swept(tangent_0, tangent, np.uintp(hinges[k, 0]), np.uintp(hinges[k, 1]))
             change[k] = 2.0 * math.atan2(y, x)
 
 
