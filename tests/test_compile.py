@@ -96,6 +96,24 @@ def test_machine_code_is_made_of_entries_alone():
     assert part(3.0) == 6.0
 
 
+def test_an_unknown_numba_compiles_in_its_own_way(monkeypatch):
+    """Where its inner workings may differ nothing of them is touched, and the numbers are the same."""
+    monkeypatch.setattr(_compile, "KNOWN", ())
+
+    def inner(x):
+        return 2.0 * x
+
+    part = _compile.compiled(inner)
+
+    def outer(x):
+        return part(x) + 1.0
+
+    whole = _compile.compiled(outer)
+    assert whole(3.0) == 7.0
+    (compiled,) = part._inner.overloads.values()
+    assert not isinstance(compiled.library, _compile._Part)
+
+
 def test_kernels_let_other_threads_go_on():
     """Every kernel releases the interpreter's lock."""
     names = [path for entry in ("rod", "motion") for path in (_compile.PACKAGE / entry).glob("*.py")]

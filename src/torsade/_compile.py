@@ -119,6 +119,11 @@ def when_compiling(call: Callable[[], object]) -> Iterator[None]:
         yield
 
 
+KNOWN = ((0, 68),)
+"""Versions of Numba whose inner workings are as `_Part` expects them. By others kernels are compiled as Numba
+does by itself, which takes up to twice as long and gives the same."""
+
+
 class _Part(codegen.JITCodeLibrary):
     """Code that becomes part of its callers'.
 
@@ -160,6 +165,11 @@ class _PartCompiler(compiler.Compiler):
         return super().compile_extra(func)
 
 
+def _pipeline() -> type[compiler.Compiler]:
+    """What compiles kernels for other kernels, as far as this version of Numba is known."""
+    return _PartCompiler if numba.version_info.short in KNOWN else compiler.Compiler
+
+
 class Kernel:
     """A compiled function of a kernel module.
 
@@ -174,9 +184,9 @@ class Kernel:
         self.py_func = function
         self._options = options
         with _caching("kernels"):
-            self._inner = njit(
-                no_cpython_wrapper=True, _nrt=counting, pipeline_class=_PartCompiler, **options
-            )(function)
+            self._inner = njit(no_cpython_wrapper=True, _nrt=counting, pipeline_class=_pipeline(), **options)(
+                function
+            )
         self.targetoptions = self._inner.targetoptions
         self._entry: Callable[..., Any] | None = None
 
