@@ -77,8 +77,8 @@ def test_compilation_leaves_the_collector_as_it_was():
         assert False in seen
 
 
-def test_machine_code_is_made_of_entries_alone():
-    """What only kernels call is compiled into them, and leaves nothing but its place in the cache."""
+def called():
+    """A kernel that another one has called, and what was compiled of it."""
 
     def inner(x):
         return 2.0 * x
@@ -88,9 +88,14 @@ def test_machine_code_is_made_of_entries_alone():
     def outer(x):
         return part(x) + 1.0
 
-    whole = _compile.compiled(outer)
-    assert whole(3.0) == 7.0
+    assert _compile.compiled(outer)(3.0) == 7.0
     (compiled,) = part._inner.overloads.values()
+    return part, compiled
+
+
+def test_machine_code_is_made_of_entries_alone():
+    """What only kernels call is compiled into them, and leaves nothing but its place in the cache."""
+    part, compiled = called()
     assert isinstance(compiled.library, _compile._Part)
     assert not list(compiled.library.get_defined_functions())
     assert part(3.0) == 6.0
@@ -99,18 +104,7 @@ def test_machine_code_is_made_of_entries_alone():
 def test_an_unknown_numba_compiles_in_its_own_way(monkeypatch):
     """Where its inner workings may differ nothing of them is touched, and the numbers are the same."""
     monkeypatch.setattr(_compile, "KNOWN", ())
-
-    def inner(x):
-        return 2.0 * x
-
-    part = _compile.compiled(inner)
-
-    def outer(x):
-        return part(x) + 1.0
-
-    whole = _compile.compiled(outer)
-    assert whole(3.0) == 7.0
-    (compiled,) = part._inner.overloads.values()
+    _, compiled = called()
     assert not isinstance(compiled.library, _compile._Part)
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import threading
 import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -51,6 +52,9 @@ LEVEL = 2
 
 DESCRIPTION = "zarr.json"
 
+_ONE_AT_A_TIME = threading.Lock()
+"""What zarr is told, and which warnings are left out, holds for all threads of a process."""
+
 
 @contextmanager
 def opened(path: Path, *, whole: bool = False) -> Iterator[zarr.Group]:
@@ -75,7 +79,7 @@ def opened(path: Path, *, whole: bool = False) -> Iterator[zarr.Group]:
     held: dict[str, Any] = dict(before)
     store = MemoryStore(held)
     # Every file is written, of zeros too, so that all can be counted.
-    with zarr.config.set({"array.write_empty_chunks": True}), warnings.catch_warnings():
+    with _ONE_AT_A_TIME, zarr.config.set({"array.write_empty_chunks": True}), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Consolidated metadata is currently not part")
         yield zarr.open_group(store, mode="a", zarr_format=3)
         if whole:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray
+import zarr
 
 import torsade as ts
 from torsade import store
@@ -41,6 +43,15 @@ def test_every_file_is_there(dataset: xarray.Dataset, tmp_path: Path) -> None:
     assert (counts["position"], counts["zeros"], counts["unknown"], counts["nothing"]) == (3, 1, 1, 0)
     store.create(dataset.assign_attrs(done=1), tmp_path / "growing.zarr.part")
     assert store.chunk_files(tmp_path / "growing.zarr.part")["position"] == 1
+
+
+def test_threads_that_store_leave_out_no_file(dataset: xarray.Dataset, tmp_path: Path) -> None:
+    """What zarr is told holds for the whole process: one thread would take it back while another writes."""
+    places = [tmp_path / f"{k}.zarr" for k in range(24)]
+    with ThreadPoolExecutor(4) as threads:
+        list(threads.map(lambda path: store.create(dataset, path), places))
+    assert {store.chunk_files(path)["zeros"] for path in places} == {1}
+    assert zarr.config.get("array.write_empty_chunks") is False
 
 
 def test_xarray_reads_what_was_written(dataset: xarray.Dataset, tmp_path: Path) -> None:
